@@ -1,0 +1,11 @@
+//! The host side of Rhogrid: import, bake, reference, measures.
+//!
+//! ```text
+//! file -> import -> Geometry -> bake -> .rho bytes -> rhogrid-core -> frame
+//!                      |                                                |
+//!                      +-----------> reference ----------> measure <----+
+//! ```
+
+pub mod error;
+pub mod geometry;
+pub mod view;
