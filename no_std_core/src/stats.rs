@@ -1,0 +1,17 @@
+//! What a frame cost: counters that the draw loops keep.
+
+/// Work done for one frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Stats {
+    /// Occupancy masks read.
+    pub nodes_visited: u32,
+    /// Nodes skipped with their subtrees because every surface in them faces
+    /// away from the eye.
+    pub nodes_back_facing: u32,
+    /// Nodes skipped because they lie outside the picture or behind the eye.
+    pub nodes_outside: u32,
+    /// Samples handed to the splatter.
+    pub samples_drawn: u32,
+    /// Colour stores after the depth test.
+    pub pixels_written: u32,
+}
