@@ -6,6 +6,7 @@
 //!                      +-----------> reference ----------> measure <----+
 //! ```
 
+pub mod bake;
 pub mod error;
 pub mod geometry;
 pub mod view;

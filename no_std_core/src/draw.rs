@@ -2,7 +2,10 @@
 
 use crate::asset::Grid;
 use crate::camera::Camera;
+use crate::grid::traverse;
+use crate::normal::CODES;
 use crate::numbers::{SplatPx, Unit, Weight};
+use crate::shade::Shader;
 use crate::stats::Stats;
 use crate::target::Target;
 
@@ -28,11 +31,21 @@ pub struct Quality {
 
 impl Default for Quality {
     fn default() -> Self {
-        Self { splat: SplatPx::ONE }
+        Self {
+            splat: SplatPx::ONE,
+        }
     }
 }
 
-/// Clears the target and draws a grid into it.
+/// Length of the shade table of a grid: 8192 words for each material.
+pub const fn shades_len(material_count: usize) -> usize {
+    CODES * material_count
+}
+
+/// Clears the target and draws a grid into it. Cannot fail.
+///
+/// `shades` is memory for a frame's colours, [`shades_len`] words; where it
+/// is shorter, samples are shaded one by one, to the same bytes.
 pub fn draw(
     grid: &Grid<'_>,
     camera: &Camera,
@@ -41,7 +54,7 @@ pub fn draw(
     shades: &mut [u16],
     target: &mut Target<'_>,
 ) -> Stats {
-    let _ = (grid, camera, light, quality, shades);
     target.clear();
-    Stats::default()
+    let shader = Shader::new(light, grid.materials(), shades);
+    traverse(grid, camera, quality, &shader, target)
 }

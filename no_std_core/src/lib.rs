@@ -1,6 +1,71 @@
-//! Rhogrid's core: integers only, no heap, no FPU, no statics.
+//! Rhogrid's core: recursive point grids drawn straight from flash into the
+//! caller's framebuffer, with integers only.
+//!
+//! No heap, no float, no statics but constant tables, no panic: buffers are
+//! the caller's, everything that can be wrong is found when an asset is
+//! opened or a target is made, and drawing cannot fail.
+//!
+//! # Conventions
+//!
+//! * **Model space** is right-handed, y up. The grid's cube spans [-1, 1] on
+//!   every axis; lengths are in half sides of that cube.
+//! * **Pictures** are row-major, x to the right, y down; pixel centres lie at
+//!   half-integers, the principal point in the middle.
+//! * **w** is the distance along the viewing direction; **depth** is 16 bits,
+//!   larger is nearer, zero is empty.
+//! * **Coverage**: a splat owns the pixels whose centres lie in [low, high)
+//!   of its rectangle, and the pixel that holds its own centre. Of two equal
+//!   depths the first drawn stays.
+//! * **Faces** are counter-clockwise from their front; normals point outward
+//!   and surfaces are one-sided unless the asset says otherwise.
+//! * **Colours** are RGB565, native words, no gamma. **Angles** are turns.
+//! * **Cells** are ordered x fastest, then y, then z; *level* k has rho^(k +
+//!   1) cells on an axis and consists of the cells of *depth* k + 1.
+//!
+//! # A frame
+//!
+//! ```text
+//! asset       bytes in flash -> checked, zero-copy views
+//! camera      eye, directions, focal length
+//! projection  block fixed point: X, Y, w as linear forms; reciprocal
+//! grid        displacement tables, traversal, facing  -> samples
+//! splat       samples -> pixels, depth test
+//! shade       normal codes x materials -> colours, once a frame
+//! target      colour and depth, or a band of them
+//! stats       what was visited, drawn, skipped
+//! ```
+//!
+//! # Example
+//!
+//! ```
+//! use rhogrid_core::asset::{AssetError, Grid};
+//! use rhogrid_core::camera::{Camera, Orbit};
+//! use rhogrid_core::draw::{Light, Quality, draw, shades_len};
+//! use rhogrid_core::numbers::{FocalPx, Length, Turns, Unit, Weight};
+//! use rhogrid_core::target::Target;
+//!
+//! fn show(asset: &[u8], colour: &mut [u16], depth: &mut [u16]) -> Result<(), AssetError> {
+//!     let grid = Grid::open(asset)?;
+//!     let orbit = Orbit {
+//!         yaw: Turns::from_bits(1 << 29),
+//!         pitch: Turns::from_bits(1 << 27),
+//!         distance: grid.radius() * Length::lit("2.6"),
+//!     };
+//!     let camera = Camera::orbit(&orbit, FocalPx::lit("320"), 240, 320);
+//!     let light = Light {
+//!         towards: [Unit::lit("0.6"), Unit::lit("0.8"), Unit::ZERO],
+//!         ambient: Weight::lit("0.2"),
+//!         diffuse: Weight::lit("0.8"),
+//!     };
+//!     let mut shades = [0; shades_len(1)];
+//!     if let Ok(mut target) = Target::new(240, 320, colour, depth) {
+//!         draw(&grid, &camera, &light, &Quality::default(), &mut shades, &mut target);
+//!     }
+//!     Ok(())
+//! }
+//! assert_eq!(show(b"RHOX", &mut [], &mut []), Err(AssetError::Magic));
+//! ```
 #![no_std]
-#![forbid(unsafe_code)]
 
 #[cfg(test)]
 extern crate std;
@@ -8,7 +73,13 @@ extern crate std;
 pub mod asset;
 pub mod camera;
 pub mod draw;
+mod grid;
+pub mod normal;
 pub mod numbers;
+mod projection;
+pub mod reciprocal;
+mod shade;
+mod splat;
 pub mod stats;
 pub mod target;
 pub mod trig;

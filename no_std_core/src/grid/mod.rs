@@ -1,0 +1,12 @@
+//! Drawing a rho-grid: displacement tables and traversal.
+//!
+//! Source: Duguet and Drettakis 2003, 5.1 and 5.2. Changes here: centres are
+//! integers in block fixed point; every level's table is rounded from the
+//! exact basis (the paper divides the table above); nodes whose surfaces all
+//! face away are skipped with their subtrees.
+
+mod facing;
+mod tables;
+mod traverse;
+
+pub(crate) use traverse::traverse;

@@ -1,0 +1,174 @@
+//! Displacement tables: from a cell's centre to its subcells' centres.
+//!
+//! Source: Duguet and Drettakis 2003, eq. (1). The cube's half side is one,
+//! so a subcell (i, j, k) of a cell at depth n lies at (2i - rho + 1, 2j -
+//! rho + 1, 2k - rho + 1) / rho^(n + 1) times the basis.
+//!
+//! # Error
+//!
+//! A table entry is the exact displacement rounded to the nearest block unit:
+//! the 32 guard bits of the basis divided by rho^(n + 1) with truncation err
+//! by less than 3 rho 2^-32 units, which is inside the slack below. A centre
+//! at depth n is the sum of the rounded centre of the root and n rounded
+//! displacements, so it lies within (n + 1) / 2 + 2^-24 units of the exact
+//! one. `tests/projection.rs` turns that into pixels and tests it.
+
+use crate::projection::{Form, Projection};
+
+/// A point in homogeneous screen space, block units.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Point {
+    pub x: i32,
+    pub y: i32,
+    pub w: i32,
+}
+
+impl Point {
+    #[inline(always)]
+    pub fn plus(self, other: Self) -> Self {
+        Self {
+            x: self.x + other.x,
+            y: self.y + other.y,
+            w: self.w + other.w,
+        }
+    }
+}
+
+/// One depth's displacements and extents.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LevelTable<const CELLS: usize> {
+    /// To each subcell's centre, in mask order.
+    pub displacements: [Point; CELLS],
+    /// The same in eye space: see [`super::facing`].
+    pub eye_displacements: [[i32; 3]; CELLS],
+    /// Half the edges of a cell of this depth, along x, y and z.
+    pub half_edges: [Point; 3],
+    /// Half the extent of a cell in w.
+    pub half_w: i32,
+    /// Radius of a cell's bounding sphere in eye-space units, rounded up.
+    pub eye_radius: i32,
+}
+
+/// The tables of every depth that a frame may reach, and the root's centre.
+pub(crate) struct Tables<const CELLS: usize, const LEVELS: usize> {
+    /// Entry n holds displacements to cells of depth n + 1 and extents of
+    /// cells of depth n + 1.
+    pub levels: [LevelTable<CELLS>; LEVELS],
+    /// Extents of the root.
+    pub root: LevelTable<1>,
+    /// The root's centre.
+    pub centre: Point,
+}
+
+impl<const CELLS: usize, const LEVELS: usize> Tables<CELLS, LEVELS> {
+    /// Fills the tables of `depth` levels.
+    pub fn new(rho: u8, depth: u8, projection: &Projection, eye_unit: i32) -> Self {
+        let rho = i64::from(rho);
+        let mut tables = Self {
+            levels: [LevelTable::EMPTY; LEVELS],
+            root: LevelTable::<1>::EMPTY,
+            centre: point(projection, |form| form.centre),
+        };
+        let mut cells_per_axis = 1i64;
+        tables.root.set_extents(projection, 1, eye_unit);
+        for level in tables.levels.iter_mut().take(usize::from(depth)) {
+            cells_per_axis *= rho;
+            level.set_extents(projection, cells_per_axis, eye_unit);
+            level.set_displacements(rho, cells_per_axis, projection, eye_unit);
+        }
+        tables
+    }
+
+    /// The table whose extents are those of cells at a depth.
+    #[inline(always)]
+    pub fn below(&self, depth: u8) -> &LevelTable<CELLS> {
+        let last = LEVELS - 1;
+        &self.levels[usize::from(depth).min(last)]
+    }
+}
+
+impl<const CELLS: usize> LevelTable<CELLS> {
+    const EMPTY: Self = Self {
+        displacements: [Point { x: 0, y: 0, w: 0 }; CELLS],
+        eye_displacements: [[0; 3]; CELLS],
+        half_edges: [Point { x: 0, y: 0, w: 0 }; 3],
+        half_w: 0,
+        eye_radius: 0,
+    };
+
+    /// Extents of cells of which `cells_per_axis` span the cube.
+    fn set_extents(&mut self, projection: &Projection, cells_per_axis: i64, eye_unit: i32) {
+        for (axis, edge) in self.half_edges.iter_mut().enumerate() {
+            *edge = point(projection, |form| {
+                form.axes.get(axis).copied().unwrap_or(0) / cells_per_axis
+            });
+        }
+        // One unit more for each rounded edge.
+        self.half_w = self.half_edges.iter().map(|edge| edge.w.abs() + 1).sum();
+        // sqrt(3) < 7/4.
+        self.eye_radius = (eye_unit * 7 / 4) / cells_per_axis as i32 + 2;
+    }
+
+    fn set_displacements(
+        &mut self,
+        rho: i64,
+        cells_per_axis: i64,
+        projection: &Projection,
+        eye_unit: i32,
+    ) {
+        let edges = projection
+            .forms
+            .map(|form| form.axes.map(|axis| axis / cells_per_axis));
+        let step = i64::from(eye_unit);
+        let entries = self
+            .displacements
+            .iter_mut()
+            .zip(&mut self.eye_displacements);
+        let mut place = [1 - rho; 3];
+        for (displacement, eye_displacement) in entries {
+            let along = |row: usize| {
+                let edges = edges.get(row).copied().unwrap_or([0; 3]);
+                let sum: i64 = place.iter().zip(edges).map(|(at, edge)| at * edge).sum();
+                round_guard(sum)
+            };
+            *displacement = Point {
+                x: along(0),
+                y: along(1),
+                w: along(2),
+            };
+            *eye_displacement = place.map(|at| round_ratio(at * step, cells_per_axis));
+            next_place(&mut place, rho);
+        }
+    }
+}
+
+/// Advances (x, y, z), x fastest, in steps of two from 1 - rho to rho - 1.
+fn next_place(place: &mut [i64; 3], rho: i64) {
+    for at in place {
+        *at += 2;
+        if *at < rho {
+            return;
+        }
+        *at = 1 - rho;
+    }
+}
+
+/// Rounds one value of each form to block units.
+fn point(projection: &Projection, value: impl Fn(&Form) -> i64) -> Point {
+    let [x, y, w] = &projection.forms;
+    Point {
+        x: round_guard(value(x)),
+        y: round_guard(value(y)),
+        w: round_guard(value(w)),
+    }
+}
+
+/// Takes the 32 guard bits off, rounding to nearest.
+fn round_guard(value: i64) -> i32 {
+    ((value + (1 << 31)) >> 32) as i32
+}
+
+/// a / b for b > 0, rounded to nearest.
+fn round_ratio(a: i64, b: i64) -> i32 {
+    (2 * a + b).div_euclid(2 * b) as i32
+}

@@ -1,0 +1,158 @@
+//! The camera's projection of one grid, in block fixed point.
+//!
+//! A point p of the model maps linearly to X = f (p - eye) . right, Y = -f
+//! (p - eye) . up and w = (p - eye) . forward; the pixel is the picture's
+//! middle plus (X, Y) / w. X and Y share one binary exponent, w has its own,
+//! both chosen so that every point of the cube stays below 2^30 in magnitude
+//! and uses that width. The exponents' difference is the only scale that the
+//! draw loops see.
+//!
+//! # Depth
+//!
+//! Depth is 16 bits, larger is nearer, zero is empty: depth = 1 + 65534
+//! (1/w - 1/far) / (1/near - 1/far), limited to [1, 65535], where *far* is
+//! the w of the cube's farthest corner and *near* that of its nearest, but at
+//! least far / 128 and the camera's near distance. It resolves w^2 (1/near -
+//! 1/far) / 65534: at near:far of 1:2 a far cell of far / 131000, at 1:128 one
+//! of far / 516. What lies nearer than *near* shares one depth.
+
+use crate::camera::Camera;
+use crate::numbers::{ScreenPx, bit_length, shift_round};
+use crate::reciprocal::Reciprocal;
+
+/// Fraction bits that the basis keeps beyond the block's unit.
+const GUARD_BITS: i32 = 32;
+/// Magnitudes stay below two to this.
+const BLOCK_BITS: i32 = 30;
+/// The depth range is at most near:far = 1:2^7.
+const DEPTH_OCTAVES: u32 = 7;
+
+/// A linear form of model space in block units with guard bits: value at the
+/// cube's centre, and change over the half side along x, y, z.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Form {
+    pub centre: i64,
+    pub axes: [i64; 3],
+}
+
+/// The projection of a grid for one frame.
+#[derive(Clone, Debug)]
+pub(crate) struct Projection {
+    /// X, Y, w in block units with [`GUARD_BITS`] fraction bits.
+    pub forms: [Form; 3],
+    /// Pixels = X / w * 2^screen_scale.
+    pub screen_scale: i32,
+    /// The picture's middle.
+    pub middle: [ScreenPx; 2],
+    /// Least w that is drawn, block units, at least 1.
+    pub near: i32,
+    depth: DepthScale,
+}
+
+/// depth = (mantissa * reciprocal's mantissa >> shift) - offset.
+#[derive(Clone, Copy, Debug)]
+struct DepthScale {
+    mantissa: i64,
+    shift: i32,
+    offset: i64,
+}
+
+impl Projection {
+    /// Sets a frame up.
+    pub fn new(camera: &Camera) -> Self {
+        let eye = camera.eye.map(|c| i128::from(c.to_bits()));
+        let row = |v: [crate::numbers::Unit; 3], negate: bool| {
+            let axes = v.map(|c| {
+                if negate {
+                    -i128::from(c.to_bits())
+                } else {
+                    i128::from(c.to_bits())
+                }
+            });
+            // Q2.30 x Q32.32: 62 fraction bits, below 2^98.
+            let centre = -(axes[0] * eye[0] + axes[1] * eye[1] + axes[2] * eye[2]);
+            (centre, axes.map(|axis| axis << 32))
+        };
+        // The focal length's highest bit goes to bit 30.
+        let focal_bits = i128::from(camera.focal_px.to_bits()).max(1);
+        let focal_shift = bit_length(focal_bits as u128) - 31;
+        let focal = i128::from(shift_round(focal_bits, focal_shift));
+        let times_focal = |(centre, axes): (i128, [i128; 3])| {
+            // 62 fraction bits become 40: 2^76 x 2^31 fits.
+            let scaled = |v: i128| (v >> 22) * focal;
+            (scaled(centre), axes.map(scaled))
+        };
+        let x = times_focal(row(camera.right, false));
+        let y = times_focal(row(camera.up, true));
+        let w = row(camera.forward, false);
+        let screen_shift = block_shift(&[x, y]);
+        let w_shift = block_shift(&[w]);
+        let form = |(centre, axes): (i128, [i128; 3]), shift: i32| Form {
+            centre: shift_round(centre, shift),
+            axes: axes.map(|axis| shift_round(axis, shift)),
+        };
+        let forms = [
+            form(x, screen_shift),
+            form(y, screen_shift),
+            form(w, w_shift),
+        ];
+        // X has 40 + 32 - focal_shift fraction bits before its shift, w 62.
+        let screen_scale =
+            (screen_shift + GUARD_BITS) - (72 - focal_shift) - ((w_shift + GUARD_BITS) - 62);
+        let near = i128::from(camera.near.to_bits().max(1));
+        let near = shift_round(near, w_shift + GUARD_BITS - 30).clamp(1, 1 << BLOCK_BITS);
+        let middle = |size: u16| ScreenPx::from_bits(i32::from(size) << 11);
+        Self {
+            depth: DepthScale::new(&forms[2], near),
+            forms,
+            screen_scale,
+            middle: [middle(camera.width), middle(camera.height)],
+            near: near as i32,
+        }
+    }
+
+    /// Depth of a reciprocal w.
+    #[inline(always)]
+    pub fn depth(&self, w: Reciprocal) -> u16 {
+        let scaled = (i64::from(w.mantissa) * self.depth.mantissa)
+            >> (self.depth.shift - w.shift).clamp(0, 63);
+        (scaled - self.depth.offset).clamp(1, 65535) as u16
+    }
+}
+
+/// The shift that brings the largest magnitude over the cube just below
+/// 2^(BLOCK_BITS + GUARD_BITS), rounding included.
+fn block_shift(rows: &[(i128, [i128; 3])]) -> i32 {
+    let bound = |(centre, axes): &(i128, [i128; 3])| {
+        axes.iter().map(|axis| axis.unsigned_abs()).sum::<u128>() + centre.unsigned_abs()
+    };
+    let largest = rows.iter().map(bound).max().unwrap_or(0);
+    bit_length(largest + (largest >> 8)) - (BLOCK_BITS + GUARD_BITS)
+}
+
+impl DepthScale {
+    fn new(w: &Form, least: i64) -> Self {
+        let reach: i64 = w
+            .axes
+            .iter()
+            .map(|axis| axis.saturating_abs() >> GUARD_BITS)
+            .sum::<i64>()
+            + 2;
+        let centre = w.centre >> GUARD_BITS;
+        let far = (centre + reach).max(1);
+        let near = (centre - reach).max(far >> DEPTH_OCTAVES).max(least).max(1);
+        // 65534 / (1/near - 1/far) = 65534 near far / (far - near) = scale.
+        let span = (far - near).max(1);
+        let scale = 65534 * i128::from(near) * i128::from(far) / i128::from(span);
+        let shift = bit_length(scale.unsigned_abs()) - 31;
+        Self {
+            mantissa: shift_round(scale, shift),
+            shift: 62 - shift,
+            offset: clamp_offset(scale / i128::from(far)) - 1,
+        }
+    }
+}
+
+fn clamp_offset(value: i128) -> i64 {
+    value.clamp(0, 1 << 62) as i64
+}

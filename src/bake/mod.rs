@@ -1,0 +1,150 @@
+//! Bakers: geometry -> assets. One file or folder for each kind; all write
+//! through [`writer`].
+
+mod cone;
+mod overlap;
+mod points;
+mod shell;
+mod surface;
+mod triangles;
+pub mod writer;
+
+use glam::DVec3;
+use rhogrid_core::asset::{Shell, max_depth};
+
+use crate::error::{Error, Place};
+use crate::geometry::{Geometry, Material, Up};
+
+pub use shell::{BakedGrid, BakedLevel};
+pub use surface::{Sample, Surface};
+
+/// What a grid baker is asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct GridOptions {
+    /// Subdivisions of each axis of a cell, 2 to 5.
+    pub rho: u8,
+    /// Level k has rho^(k + 1) cells on an axis.
+    pub level: u8,
+    /// Draw every surface from both sides.
+    pub two_sided: bool,
+    /// Which source axis points up; the geometry is already turned, the asset
+    /// remembers it.
+    pub up: Up,
+}
+
+impl Default for GridOptions {
+    fn default() -> Self {
+        Self {
+            rho: 3,
+            level: 4,
+            two_sided: false,
+            up: Up::Y,
+        }
+    }
+}
+
+/// Where a grid lies in its source: the tight centred bounding cube.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cube {
+    /// Middle of the geometry's box, source units, y up.
+    pub centre: DVec3,
+    /// Half of the box's longest side.
+    pub half_side: f64,
+    /// Distance of the farthest vertex from the centre.
+    pub radius: f64,
+}
+
+/// Bakes a rho-grid. `progress` hears of every finished intermediate cell
+/// and of how many there are at its depth.
+///
+/// # Errors
+/// When rho or the level is out of range, or the geometry has no extent.
+pub fn grid(
+    geometry: &Geometry,
+    options: &GridOptions,
+    progress: &(dyn Fn(Progress) + Sync),
+) -> Result<BakedGrid, Error> {
+    let depth = depth_of(options)?;
+    let cube = cube_of(geometry)?;
+    let grid = match geometry {
+        Geometry::Mesh(mesh) => {
+            let surface = triangles::MeshSurface::new(mesh, &cube);
+            shell::bake(&surface, options, depth, progress)
+        }
+        Geometry::Cloud(cloud) => {
+            let surface = points::CloudSurface::new(cloud, &cube);
+            shell::bake(&surface, options, depth, progress)
+        }
+    };
+    let materials = match geometry {
+        Geometry::Mesh(mesh) => mesh.materials.clone(),
+        Geometry::Cloud(_) => vec![Material::white()],
+    };
+    Ok(BakedGrid {
+        levels: grid,
+        rho: options.rho,
+        shell: Shell::Fat,
+        two_sided: options.two_sided,
+        up: options.up,
+        cube,
+        materials: materials.iter().map(|material| material.diffuse).collect(),
+    })
+}
+
+/// What a baker reports while it works.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Progress {
+    /// A level starts; so many cells will be subdivided.
+    Level {
+        /// Cells to subdivide.
+        cells: u64,
+    },
+    /// So many cells were subdivided.
+    Done {
+        /// Cells subdivided.
+        cells: u64,
+    },
+}
+
+fn depth_of(options: &GridOptions) -> Result<u8, Error> {
+    let GridOptions { rho, level, .. } = *options;
+    let fail = |what: String, remedy: String| {
+        Err(Error {
+            file: None,
+            place: Place::Whole,
+            what,
+            remedy,
+        })
+    };
+    if !(2..=5).contains(&rho) {
+        return fail(
+            format!("--rho {rho} is not possible"),
+            "give 2, 3, 4 or 5".into(),
+        );
+    }
+    let deepest = max_depth(rho) - 1;
+    if level > deepest {
+        return fail(
+            format!("--level {level} is too deep for --rho {rho}"),
+            format!("give at most {deepest}"),
+        );
+    }
+    Ok(level + 1)
+}
+
+fn cube_of(geometry: &Geometry) -> Result<Cube, Error> {
+    let bounds = geometry.bounds().filter(|bounds| bounds.half_side() > 0.0);
+    let Some(bounds) = bounds else {
+        return Err(Error {
+            file: None,
+            place: Place::Whole,
+            what: "the geometry has no extent".into(),
+            remedy: "give at least two different points".into(),
+        });
+    };
+    Ok(Cube {
+        centre: bounds.centre(),
+        half_side: bounds.half_side(),
+        radius: bounds.radius,
+    })
+}

@@ -1,0 +1,262 @@
+//! The fat shell of a surface: every cell that it touches, level by level.
+//!
+//! Source: Duguet and Drettakis 2003, 4.1 and 4.2. A cell's sample is the
+//! surface's point nearest to its centre. That point lies at most half a
+//! cell's diagonal away, so a cell keeps the primitives whose bounds meet the
+//! cube around that ball: its *neighbourhood*, which its subcells inherit.
+
+use glam::{DVec3, Vec3};
+use rayon::prelude::*;
+use rhogrid_core::asset::node::{halves, occupied};
+use rhogrid_core::asset::{Rgb, Shell};
+use rhogrid_core::normal::encode;
+
+use super::surface::{Aabb, Surface};
+use super::{Cube, GridOptions, Progress, cone};
+use crate::geometry::Up;
+
+/// Cells whose primitives are gathered in one piece of work.
+const CHUNK: usize = 256;
+
+/// A grid before it is written.
+#[derive(Clone, Debug)]
+pub struct BakedGrid {
+    /// Levels of depth 0 to depth.
+    pub levels: Vec<BakedLevel>,
+    /// Subdivisions of each axis of a cell.
+    pub rho: u8,
+    /// Which cells there are.
+    pub shell: Shell,
+    /// Whether every surface is drawn from both sides.
+    pub two_sided: bool,
+    /// Which source axis pointed up.
+    pub up: Up,
+    /// Where the grid lies in its source.
+    pub cube: Cube,
+    /// Diffuse colours, one to eight.
+    pub materials: Vec<Rgb>,
+}
+
+/// The cells of one depth, in file order.
+#[derive(Clone, Debug, Default)]
+pub struct BakedLevel {
+    /// Node records of the cells above.
+    pub nodes: Vec<u16>,
+    /// Attributes of the cells.
+    pub attributes: Vec<u16>,
+}
+
+/// A cell that will be subdivided.
+struct Cell {
+    place: [u32; 3],
+    attribute: u16,
+    neighbourhood: Vec<u32>,
+}
+
+/// A cell's record and children.
+struct Subdivision {
+    record: Vec<u16>,
+    two_sided: bool,
+    children: Vec<Cell>,
+}
+
+struct Baker<'a, S> {
+    surface: &'a S,
+    options: &'a GridOptions,
+}
+
+/// Subdivides the cube `depth` times.
+pub(super) fn bake<S: Surface>(
+    surface: &S,
+    options: &GridOptions,
+    depth: u8,
+    progress: &(dyn Fn(Progress) + Sync),
+) -> Vec<BakedLevel> {
+    let baker = Baker { surface, options };
+    let everything: Vec<u32> = (0..surface.count()).collect();
+    let attribute = baker.attribute(DVec3::ZERO, &everything);
+    let mut levels = vec![BakedLevel {
+        nodes: Vec::new(),
+        attributes: vec![attribute],
+    }];
+    let mut cells = vec![Cell {
+        place: [0; 3],
+        attribute,
+        neighbourhood: everything,
+    }];
+    let mut two_sided: Vec<Vec<bool>> = Vec::new();
+    for above in 0..depth {
+        progress(Progress::Level {
+            cells: cells.len() as u64,
+        });
+        let leaves = above + 1 == depth;
+        let done: Vec<Subdivision> = cells
+            .par_chunks(CHUNK)
+            .flat_map_iter(|chunk| {
+                let done: Vec<Subdivision> = chunk
+                    .iter()
+                    .map(|cell| baker.subdivide(cell, above, leaves))
+                    .collect();
+                progress(Progress::Done {
+                    cells: chunk.len() as u64,
+                });
+                done
+            })
+            .collect();
+        levels.push(BakedLevel {
+            nodes: done
+                .iter()
+                .flat_map(|cell| cell.record.iter().copied())
+                .collect(),
+            attributes: done
+                .iter()
+                .flat_map(|cell| cell.children.iter().map(|child| child.attribute))
+                .collect(),
+        });
+        two_sided.push(done.iter().map(|cell| cell.two_sided).collect());
+        cells = done.into_iter().flat_map(|cell| cell.children).collect();
+    }
+    spread_two_sided(options.rho, &mut levels, &two_sided);
+    levels
+}
+
+/// Marks every ancestor of a two-sided node two-sided, so that none of them
+/// is skipped as facing away.
+fn spread_two_sided(rho: u8, levels: &mut [BakedLevel], two_sided: &[Vec<bool>]) {
+    let size = halves(rho);
+    let Some(mut below) = two_sided.last().cloned() else {
+        return;
+    };
+    for (level, own) in levels.iter_mut().skip(1).zip(two_sided).rev().skip(1) {
+        let mut children = below.iter();
+        let mut flags = Vec::with_capacity(own.len());
+        for (record, &own) in level.nodes.chunks_exact_mut(size).zip(own) {
+            let count = occupied(rho, record) as usize;
+            let marked = children
+                .by_ref()
+                .take(count)
+                .fold(own, |any, &child| any | child);
+            if marked && let Some(last) = record.last_mut() {
+                *last |= cone::flags(0, true).to_last(rho);
+            }
+            flags.push(marked);
+        }
+        below = flags;
+    }
+}
+
+impl<S: Surface> Baker<'_, S> {
+    fn subdivide(&self, cell: &Cell, depth: u8, leaves: bool) -> Subdivision {
+        let rho = u32::from(self.options.rho);
+        let axis = rho.pow(u32::from(depth) + 1);
+        let bounded: Vec<(u32, Aabb)> = cell
+            .neighbourhood
+            .iter()
+            .map(|&primitive| (primitive, self.surface.bounds(primitive)))
+            .collect();
+        let mut record = vec![0u16; halves(self.options.rho)];
+        let mut children = Vec::new();
+        let mut opposed = false;
+        for bit in 0..rho.pow(3) {
+            let within = [bit % rho, bit / rho % rho, bit / (rho * rho)];
+            let place = [0, 1, 2].map(|i| cell.place[i] * rho + within[i]);
+            let (bounds, ball) = boxes(place, axis);
+            let near: Vec<(u32, Aabb)> = bounded
+                .iter()
+                .filter(|(_, own)| own.meets(&ball))
+                .copied()
+                .collect();
+            if !near.iter().any(|&(primitive, own)| {
+                own.meets(&bounds) && self.surface.touches(primitive, &bounds)
+            }) {
+                continue;
+            }
+            record[bit as usize / 16] |= 1 << (bit % 16);
+            let centre = bounds.min.midpoint(bounds.max);
+            let (normal, material) = self.nearest(centre, &near);
+            if leaves && !opposed {
+                opposed = cone::is_opposed(normal, self.faces(&near, &bounds));
+            }
+            children.push(Cell {
+                place,
+                attribute: attribute(normal, material),
+                neighbourhood: if leaves {
+                    Vec::new()
+                } else {
+                    near.iter().map(|&(primitive, _)| primitive).collect()
+                },
+            });
+        }
+        let own = boxes(cell.place, axis / rho).0;
+        let two_sided = self.options.two_sided || opposed;
+        let aperture = cone::aperture(cell.attribute, self.faces(&bounded, &own));
+        if let Some(last) = record.last_mut() {
+            *last |= cone::flags(aperture, two_sided).to_last(self.options.rho);
+        }
+        Subdivision {
+            record,
+            two_sided,
+            children,
+        }
+    }
+
+    /// The directions of the faces that touch a cell.
+    fn faces<'b>(
+        &'b self,
+        near: &'b [(u32, Aabb)],
+        cell: &'b Aabb,
+    ) -> impl Iterator<Item = Vec3> + 'b {
+        near.iter()
+            .filter(|(primitive, own)| own.meets(cell) && self.surface.touches(*primitive, cell))
+            .filter_map(|(primitive, _)| self.surface.facing(*primitive))
+    }
+
+    /// Normal and material of the point nearest to a centre.
+    fn nearest(&self, centre: DVec3, near: &[(u32, Aabb)]) -> (Vec3, u8) {
+        let mut best = f64::INFINITY;
+        let mut found = (Vec3::Y, 0);
+        for (primitive, own) in near {
+            if own.distance_squared(centre) >= best {
+                continue;
+            }
+            let sample = self.surface.sample_at(*primitive, centre);
+            if sample.distance_squared < best {
+                best = sample.distance_squared;
+                found = (sample.normal, sample.material);
+            }
+        }
+        found
+    }
+
+    fn attribute(&self, centre: DVec3, primitives: &[u32]) -> u16 {
+        let bounded: Vec<(u32, Aabb)> = primitives
+            .iter()
+            .map(|&primitive| (primitive, self.surface.bounds(primitive)))
+            .collect();
+        let (normal, material) = self.nearest(centre, &bounded);
+        attribute(normal, material)
+    }
+}
+
+/// A cell's box, and the box around the ball through its corners.
+fn boxes(place: [u32; 3], axis: u32) -> (Aabb, Aabb) {
+    // Neighbours compute a shared side to the same double.
+    let side = |index: u32| f64::from(2 * index as i32 - axis as i32) / f64::from(axis);
+    let corner = |more: u32| DVec3::from_array(place.map(|index| side(index + more)));
+    let cell = Aabb {
+        min: corner(0),
+        max: corner(1),
+    };
+    let ball = 3f64.sqrt() / f64::from(axis);
+    (
+        cell,
+        Aabb::cube(cell.min.midpoint(cell.max), ball * (1.0 + 1e-12)),
+    )
+}
+
+fn attribute(normal: Vec3, material: u8) -> u16 {
+    let scaled = normal
+        .to_array()
+        .map(|c| (f64::from(c) * f64::from(1 << 26)) as i32);
+    encode(scaled) | u16::from(material) << 13
+}

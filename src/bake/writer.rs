@@ -1,0 +1,163 @@
+//! The one writer of `.rho` files: see [`rhogrid_core::asset`] for the
+//! format.
+
+use std::io::Write;
+use std::path::Path;
+
+use rhogrid_core::asset::node::{halves, occupied};
+use rhogrid_core::asset::{
+    HEADER_BYTES, HEADER_CRC_OFFSET, KIND_GRID, MAGIC, SECTION_BYTES, SECTION_LEVEL,
+    SECTION_MATERIALS, Shell, VERSION, checksum,
+};
+
+use super::BakedGrid;
+use crate::error::Error;
+use crate::geometry::Up;
+
+/// Serializes a grid.
+pub fn to_bytes(grid: &BakedGrid) -> Vec<u8> {
+    let mut sections = vec![(SECTION_MATERIALS, materials(grid))];
+    sections.extend(levels(grid).into_iter().map(|level| (SECTION_LEVEL, level)));
+    let header_bytes = HEADER_BYTES + SECTION_BYTES * sections.len();
+    let mut bytes = header(grid, header_bytes, sections.len());
+    let mut offset = header_bytes;
+    for (kind, section) in &sections {
+        for word in [*kind, offset as u32, section.len() as u32, 0] {
+            bytes.extend(word.to_le_bytes());
+        }
+        offset += section.len();
+    }
+    for (_, section) in &sections {
+        bytes.extend(section);
+    }
+    seal(&mut bytes);
+    bytes
+}
+
+/// Writes the checksums of all sections and of the header, as far as the
+/// table describes bytes that are there.
+pub fn seal(bytes: &mut [u8]) {
+    let word = |bytes: &[u8], at: usize| {
+        bytes
+            .get(at..at + 4)
+            .and_then(|w| w.try_into().ok())
+            .map(u32::from_le_bytes)
+    };
+    let count = bytes.get(15).copied().unwrap_or(0);
+    for index in 0..usize::from(count) {
+        let entry = HEADER_BYTES + SECTION_BYTES * index;
+        let (Some(offset), Some(length)) = (word(bytes, entry + 4), word(bytes, entry + 8)) else {
+            break;
+        };
+        let (start, length) = (offset as usize, length as usize);
+        if let Some(section) = bytes.get(start..start.saturating_add(length)) {
+            let crc = checksum(&[section]).to_le_bytes();
+            if let Some(place) = bytes.get_mut(entry + 12..entry + 16) {
+                place.copy_from_slice(&crc);
+            }
+        }
+    }
+    let end = HEADER_BYTES + SECTION_BYTES * usize::from(count);
+    if let (Some(before), Some(table)) = (
+        bytes.get(..HEADER_CRC_OFFSET),
+        bytes.get(HEADER_CRC_OFFSET + 4..end),
+    ) {
+        let crc = checksum(&[before, table]).to_le_bytes();
+        bytes[HEADER_CRC_OFFSET..HEADER_CRC_OFFSET + 4].copy_from_slice(&crc);
+    }
+}
+
+fn header(grid: &BakedGrid, header_bytes: usize, sections: usize) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    bytes.extend(MAGIC);
+    bytes.extend(VERSION.to_le_bytes());
+    bytes.extend((header_bytes as u16).to_le_bytes());
+    let up = match grid.up {
+        Up::X => 0,
+        Up::Y => 1,
+        Up::Z => 2,
+    };
+    let shell = match grid.shell {
+        Shell::Fat => 0,
+        Shell::Thin => 1,
+    };
+    let depth = grid.levels.len() as u8 - 1;
+    bytes.extend([KIND_GRID, grid.rho, depth, 16]);
+    bytes.extend([shell, up, u8::from(grid.two_sided), sections as u8]);
+    let radius = (grid.cube.radius / grid.cube.half_side * f64::from(1 << 28)).ceil();
+    bytes.extend((radius as u32).to_le_bytes());
+    bytes.extend([0; 4]);
+    for value in grid
+        .cube
+        .centre
+        .to_array()
+        .into_iter()
+        .chain([grid.cube.half_side])
+    {
+        bytes.extend(value.to_le_bytes());
+    }
+    bytes.resize(HEADER_BYTES, 0);
+    bytes
+}
+
+fn materials(grid: &BakedGrid) -> Vec<u8> {
+    let mut bytes = (grid.materials.len() as u32).to_le_bytes().to_vec();
+    for [red, green, blue] in &grid.materials {
+        bytes.extend([*red, *green, *blue, 0]);
+    }
+    bytes
+}
+
+fn levels(grid: &BakedGrid) -> Vec<Vec<u8>> {
+    let size = halves(grid.rho);
+    let counts = |nodes: &[u16]| -> Vec<u32> {
+        nodes
+            .chunks_exact(size)
+            .map(|record| occupied(grid.rho, record))
+            .collect()
+    };
+    let mut above: Vec<u32> = Vec::new();
+    let mut sections = Vec::new();
+    for (depth, level) in grid.levels.iter().enumerate() {
+        let own = counts(&level.nodes);
+        let mut bytes = (level.attributes.len() as u32).to_le_bytes().to_vec();
+        // Siblings in each group: one root, then the children of each cell.
+        let groups = if depth == 1 { vec![1] } else { above };
+        let (mut first, mut cells) = (0usize, 0u32);
+        for &siblings in groups.iter().take(if depth == 0 { 0 } else { usize::MAX }) {
+            bytes.extend(cells.to_le_bytes());
+            let end = first + siblings as usize;
+            cells += own[first..end].iter().sum::<u32>();
+            first = end;
+        }
+        extend_padded(&mut bytes, &level.nodes);
+        extend_padded(&mut bytes, &level.attributes);
+        sections.push(bytes);
+        above = own;
+    }
+    sections
+}
+
+fn extend_padded(bytes: &mut Vec<u8>, words: &[u16]) {
+    bytes.extend(words.iter().flat_map(|word| word.to_le_bytes()));
+    bytes.resize(bytes.len().next_multiple_of(4), 0);
+}
+
+/// Writes a file whole or not at all: to a temporary name in the same
+/// folder, then renamed.
+///
+/// # Errors
+/// When the folder cannot be written to.
+pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Error> {
+    let folder = match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    };
+    let remedy = "choose a folder that exists and can be written to";
+    let fail =
+        |error: std::io::Error| Error::file(path, format!("cannot be written: {error}"), remedy);
+    let mut file = tempfile::NamedTempFile::new_in(folder).map_err(fail)?;
+    file.write_all(bytes).map_err(fail)?;
+    file.persist(path).map_err(|error| fail(error.error))?;
+    Ok(())
+}
