@@ -8,4 +8,6 @@
 
 pub mod error;
 pub mod geometry;
+#[path = "import/procedural/mod.rs"]
+pub mod procedural;
 pub mod view;
