@@ -9,4 +9,6 @@
 pub mod bake;
 pub mod error;
 pub mod geometry;
+#[path = "import/procedural/mod.rs"]
+pub mod procedural;
 pub mod view;
