@@ -46,6 +46,11 @@ pub struct BakedLevel {
     pub attributes: Vec<u16>,
 }
 
+/// How much a box grows with each doubling of the cells on an axis. A surface
+/// on the side of a cell touches it; where rounding decides, a child counts
+/// what its parent counted, so that no touched cell is without children.
+const SLACK: f64 = 1e-12;
+
 /// A cell that will be subdivided.
 struct Cell {
     place: [u32; 3],
@@ -238,7 +243,8 @@ impl<S: Surface> Baker<'_, S> {
     }
 }
 
-/// A cell's box, and the box around the ball through its corners.
+/// A cell's box with its slack, and the box around the ball through its
+/// corners.
 fn boxes(place: [u32; 3], axis: u32) -> (Aabb, Aabb) {
     // Neighbours compute a shared side to the same double.
     let side = |index: u32| f64::from(2 * index as i32 - axis as i32) / f64::from(axis);
@@ -246,6 +252,12 @@ fn boxes(place: [u32; 3], axis: u32) -> (Aabb, Aabb) {
     let cell = Aabb {
         min: corner(0),
         max: corner(1),
+    };
+    // Coordinates are below one: rounding errs by some 1e-16.
+    let slack = SLACK * f64::from(axis).log2().ceil();
+    let cell = Aabb {
+        min: cell.min - slack,
+        max: cell.max + slack,
     };
     let ball = 3f64.sqrt() / f64::from(axis);
     (
