@@ -118,7 +118,9 @@ impl Bounds {
             .map(|point| (point, point))
             .reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))?;
         let centre = min.midpoint(max);
-        let radius = points.map(|point| point.distance(centre)).fold(0.0, f64::max);
+        let radius = points
+            .map(|point| point.distance(centre))
+            .fold(0.0, f64::max);
         Some(Self { min, max, radius })
     }
 
