@@ -8,4 +8,6 @@
 
 pub mod error;
 pub mod geometry;
+pub mod output;
+pub mod picture;
 pub mod view;
