@@ -10,4 +10,5 @@ pub mod error;
 pub mod geometry;
 pub mod output;
 pub mod picture;
+pub mod reference;
 pub mod view;
