@@ -8,6 +8,7 @@
 
 pub mod error;
 pub mod geometry;
+pub mod measure;
 pub mod output;
 pub mod picture;
 pub mod reference;
