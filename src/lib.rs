@@ -9,6 +9,10 @@
 pub mod bake;
 pub mod error;
 pub mod geometry;
+pub mod measure;
+pub mod output;
+pub mod picture;
 #[path = "import/procedural/mod.rs"]
 pub mod procedural;
+pub mod reference;
 pub mod view;
