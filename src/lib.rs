@@ -8,4 +8,5 @@
 
 pub mod error;
 pub mod geometry;
+pub mod import;
 pub mod view;
