@@ -9,10 +9,9 @@
 pub mod bake;
 pub mod error;
 pub mod geometry;
+pub mod import;
 pub mod measure;
 pub mod output;
 pub mod picture;
-#[path = "import/procedural/mod.rs"]
-pub mod procedural;
 pub mod reference;
 pub mod view;

@@ -1,0 +1,182 @@
+//! Wavefront OBJ and MTL by way of the tobj crate, whose gaps are closed
+//! around it.
+//!
+//! A scan of our own checks every line and hands tobj a clean copy of the
+//! text, so that tobj (which names no lines, takes NaN for a number, two
+//! corners for a triangle, and stops at a `\`) sees only what it reads right.
+//! tobj parses numbers, resolves materials and splits the file into models;
+//! faces come back uncut, in file order, and are joined to one mesh. Groups,
+//! smoothing groups, texture coordinates and vertex colours are not used.
+
+mod lines;
+mod mtl;
+mod scan;
+
+use std::collections::HashSet;
+use std::path::Path;
+
+use glam::DVec3;
+
+use self::scan::{FaceLine, Scan};
+use super::normals::NO_NORMAL;
+use super::surface::{Corner, Face, Polygons, count, mesh};
+use super::{Imported, shown};
+use crate::error::{Error, Place};
+use crate::geometry::{Geometry, Material};
+
+/// Kinds of unused statements that get a note of their own.
+const MAX_UNUSED: usize = 8;
+
+/// The name by which the clean text includes its materials.
+const LIBRARY: &str = "mtllib materials\n";
+
+/// Reads an OBJ file and the MTL files beside it.
+pub(super) fn read(file: &Path, bytes: &[u8]) -> Result<Imported, Error> {
+    let scan = scan::scan(file, &lines::text(bytes))?;
+    if scan.face_lines.is_empty() {
+        return Err(without_faces(file, &scan));
+    }
+    let mut notes = Vec::new();
+    let mtl = mtl::libraries(file, &scan.libraries, &mut notes)?;
+    let disagreement = |error| {
+        let what = format!("the OBJ parser fails where the scan did not ({error})");
+        Error::file(file, what, "export the model again, or as PLY")
+    };
+    let clean = [scan.points.as_str(), LIBRARY, &scan.faces].concat();
+    let parsed = tobj::load_obj_buf(&mut clean.as_bytes(), &tobj::LoadOptions::default(), |_| {
+        tobj::load_mtl_buf(&mut mtl.as_bytes())
+    });
+    let (models, materials) = parsed.map_err(|error| disagreement(error.to_string()))?;
+    let materials = materials.map_err(|error| disagreement(error.to_string()))?;
+    note_unused(&scan, &materials, &mut notes);
+    let polygons = join(&models, &materials, &scan.face_lines)
+        .ok_or_else(|| disagreement("it returns other faces".to_owned()))?;
+    let mesh = mesh(file, polygons, &mut notes)?;
+    Ok(Imported {
+        geometry: Geometry::Mesh(mesh),
+        notes,
+    })
+}
+
+fn without_faces(file: &Path, scan: &Scan) -> Error {
+    if scan.vertices == 0 {
+        let what = "no vertices and no faces";
+        return Error::file(file, what, "is this a Wavefront OBJ model? export it again");
+    }
+    let what = format!(
+        "nothing to draw: {} but no faces",
+        count(scan.vertices, "vertex")
+    );
+    let remedy = "convert point clouds to PLY with normals (nx ny nz); OBJ cannot pair them";
+    Error::file(file, what, remedy)
+}
+
+fn note_unused(scan: &Scan, materials: &[tobj::Material], notes: &mut Vec<String>) {
+    let known: HashSet<&str> = materials
+        .iter()
+        .map(|material| material.name.as_str())
+        .collect();
+    let unknown = scan
+        .materials
+        .iter()
+        .filter(|(name, _)| !known.contains(name.as_str()));
+    let unknown: Vec<_> = unknown.collect();
+    if let Some((name, line)) = unknown.iter().min_by_key(|(_, line)| *line) {
+        let number = count(unknown.len(), "material");
+        notes.push(format!(
+            "{number} not defined, the first `{}` on line {line}: white",
+            shown(name)
+        ));
+    }
+    for (line, name) in scan.dangling.iter().zip(["texture coordinates", "normals"]) {
+        if let Some(line) = line {
+            notes.push(format!(
+                "line {line}: a face names {name}, but the file has none"
+            ));
+        }
+    }
+    for (keyword, (number, line)) in scan.unused.iter().take(MAX_UNUSED) {
+        let number = count(*number, "statement");
+        notes.push(format!(
+            "{number} `{}` not used, the first on line {line}",
+            shown(keyword)
+        ));
+    }
+    if scan.unused.len() > MAX_UNUSED {
+        let more = scan.unused.len() - MAX_UNUSED;
+        notes.push(format!(
+            "{} of statement more not used",
+            count(more, "kind")
+        ));
+    }
+}
+
+/// One set of polygons from all models, or `None` if their faces are not
+/// those of the scan. Materials follow a white one.
+fn join(
+    models: &[tobj::Model],
+    materials: &[tobj::Material],
+    lines: &[FaceLine],
+) -> Option<Polygons> {
+    let mut polygons = Polygons {
+        materials: std::iter::once(Material::white())
+            .chain(materials.iter().map(material))
+            .collect(),
+        ..Polygons::default()
+    };
+    let mut lines = lines.iter();
+    for tobj::Model { mesh, .. } in models {
+        let first_position = u32::try_from(polygons.positions.len()).ok()?;
+        let first_normal = u32::try_from(polygons.normals.len()).ok()?;
+        polygons
+            .positions
+            .extend(mesh.positions.chunks_exact(3).map(DVec3::from_slice));
+        polygons
+            .normals
+            .extend(mesh.normals.chunks_exact(3).map(DVec3::from_slice));
+        let material = u32::try_from(mesh.material_id.map_or(0, |id| id + 1)).ok()?;
+        // Triangles alone come without their sizes.
+        let triangles = if mesh.face_arities.is_empty() {
+            mesh.indices.len() / 3
+        } else {
+            0
+        };
+        let sizes = mesh
+            .face_arities
+            .iter()
+            .copied()
+            .chain(std::iter::repeat_n(3, triangles));
+        let mut start = 0;
+        for size in sizes {
+            let FaceLine { line, has_normals } = *lines.next()?;
+            let range = start..start + size as usize;
+            start = range.end;
+            for i in range {
+                let normal = if has_normals {
+                    first_normal + mesh.normal_indices.get(i)?
+                } else {
+                    NO_NORMAL
+                };
+                polygons.corners.push(Corner {
+                    position: first_position + mesh.indices.get(i)?,
+                    normal,
+                });
+            }
+            polygons.faces.push(Face {
+                end: polygons.corners.len(),
+                material,
+                place: Place::Line(line),
+            });
+        }
+    }
+    lines.next().is_none().then_some(polygons)
+}
+
+fn material(material: &tobj::Material) -> Material {
+    Material {
+        name: material.name.clone(),
+        diffuse: material.diffuse.map_or([255; 3], |colour| {
+            colour.map(|channel| (channel.clamp(0.0, 1.0) * 255.0).round() as u8)
+        }),
+    }
+}
