@@ -86,6 +86,15 @@ pub enum Up {
 }
 
 impl Up {
+    /// The axis's name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::X => "x",
+            Self::Y => "y",
+            Self::Z => "z",
+        }
+    }
+
     /// Rotates a source vector so that y is up (a proper rotation, so that
     /// handedness and winding stay).
     pub fn to_y_up(self, vector: DVec3) -> DVec3 {

@@ -6,7 +6,9 @@
 //!                      +-----------> reference ----------> measure <----+
 //! ```
 
+pub mod asset_file;
 pub mod bake;
+pub mod cli;
 pub mod error;
 pub mod geometry;
 pub mod import;

@@ -76,7 +76,7 @@ pub mod draw;
 mod grid;
 pub mod normal;
 pub mod numbers;
-mod projection;
+pub mod projection;
 pub mod reciprocal;
 mod shade;
 mod splat;

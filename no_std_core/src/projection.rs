@@ -17,7 +17,7 @@
 //! of far / 516. What lies nearer than *near* shares one depth.
 
 use crate::camera::Camera;
-use crate::numbers::{ScreenPx, bit_length, shift_round};
+use crate::numbers::{Length, ScreenPx, bit_length, shift_round};
 use crate::reciprocal::Reciprocal;
 
 /// Fraction bits that the basis keeps beyond the block's unit.
@@ -46,6 +46,8 @@ pub(crate) struct Projection {
     pub middle: [ScreenPx; 2],
     /// Least w that is drawn, block units, at least 1.
     pub near: i32,
+    /// A block unit of w is 2^w_scale half sides.
+    w_scale: i32,
     depth: DepthScale,
 }
 
@@ -55,6 +57,8 @@ struct DepthScale {
     mantissa: i64,
     shift: i32,
     offset: i64,
+    /// Nearest and farthest w of the scale, block units.
+    range: [i64; 2],
 }
 
 impl Projection {
@@ -108,6 +112,7 @@ impl Projection {
             screen_scale,
             middle: [middle(camera.width), middle(camera.height)],
             near: near as i32,
+            w_scale: w_shift + GUARD_BITS - 62,
         }
     }
 
@@ -130,6 +135,28 @@ fn block_shift(rows: &[(i128, [i128; 3])]) -> i32 {
     bit_length(largest + (largest >> 8)) - (BLOCK_BITS + GUARD_BITS)
 }
 
+/// The distances between which depth resolves: see
+/// [`crate::projection`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct DepthRange {
+    /// Where depth is 65535, half sides.
+    pub near: Length,
+    /// Where depth is 1, half sides.
+    pub far: Length,
+}
+
+impl DepthRange {
+    /// The range of a camera's frames.
+    pub fn of(camera: &Camera) -> Self {
+        let projection = Projection::new(camera);
+        let [near, far] = projection.depth.range.map(|w| {
+            let bits = shift_round(i128::from(w), -projection.w_scale - 32);
+            Length::from_bits(bits.max(1))
+        });
+        Self { near, far }
+    }
+}
+
 impl DepthScale {
     fn new(w: &Form, least: i64) -> Self {
         let reach: i64 = w
@@ -149,6 +176,7 @@ impl DepthScale {
             mantissa: shift_round(scale, shift),
             shift: 62 - shift,
             offset: clamp_offset(scale / i128::from(far)) - 1,
+            range: [near, far],
         }
     }
 }

@@ -109,7 +109,7 @@ mod tests {
         for bits in 0..32 {
             let operand = 1u32 << bits;
             assert_eq!(reciprocal(operand).shift, 31 - bits);
-            assert_eq!(reciprocal(operand | operand / 2).shift, 31 - bits);
+            assert_eq!(reciprocal(operand | (operand / 2)).shift, 31 - bits);
         }
         assert_eq!(reciprocal(0), reciprocal(1));
     }

@@ -65,7 +65,7 @@ pub fn grid(
     progress: &(dyn Fn(Progress) + Sync),
 ) -> Result<BakedGrid, Error> {
     let depth = depth_of(options)?;
-    let cube = cube_of(geometry)?;
+    let cube = Cube::of(geometry)?;
     let grid = match geometry {
         Geometry::Mesh(mesh) => {
             let surface = triangles::MeshSurface::new(mesh, &cube);
@@ -132,19 +132,25 @@ fn depth_of(options: &GridOptions) -> Result<u8, Error> {
     Ok(level + 1)
 }
 
-fn cube_of(geometry: &Geometry) -> Result<Cube, Error> {
-    let bounds = geometry.bounds().filter(|bounds| bounds.half_side() > 0.0);
-    let Some(bounds) = bounds else {
-        return Err(Error {
-            file: None,
-            place: Place::Whole,
-            what: "the geometry has no extent".into(),
-            remedy: "give at least two different points".into(),
-        });
-    };
-    Ok(Cube {
-        centre: bounds.centre(),
-        half_side: bounds.half_side(),
-        radius: bounds.radius,
-    })
+impl Cube {
+    /// The tight centred bounding cube of geometry.
+    ///
+    /// # Errors
+    /// When the geometry has no extent.
+    pub fn of(geometry: &Geometry) -> Result<Self, Error> {
+        let bounds = geometry.bounds().filter(|bounds| bounds.half_side() > 0.0);
+        let Some(bounds) = bounds else {
+            return Err(Error {
+                file: None,
+                place: Place::Whole,
+                what: "the geometry has no extent".into(),
+                remedy: "give at least two different points".into(),
+            });
+        };
+        Ok(Self {
+            centre: bounds.centre(),
+            half_side: bounds.half_side(),
+            radius: bounds.radius,
+        })
+    }
 }

@@ -1,9 +1,6 @@
 //! The one writer of `.rho` files: see [`rhogrid_core::asset`] for the
 //! format.
 
-use std::io::Write;
-use std::path::Path;
-
 use rhogrid_core::asset::node::{halves, occupied};
 use rhogrid_core::asset::{
     HEADER_BYTES, HEADER_CRC_OFFSET, KIND_GRID, MAGIC, SECTION_BYTES, SECTION_LEVEL,
@@ -11,14 +8,30 @@ use rhogrid_core::asset::{
 };
 
 use super::BakedGrid;
-use crate::error::Error;
+use crate::error::{Error, Place};
 use crate::geometry::Up;
 
 /// Serializes a grid.
-pub fn to_bytes(grid: &BakedGrid) -> Vec<u8> {
+///
+/// # Errors
+/// When the asset would not fit the format's 32-bit offsets.
+pub fn to_bytes(grid: &BakedGrid) -> Result<Vec<u8>, Error> {
     let mut sections = vec![(SECTION_MATERIALS, materials(grid))];
     sections.extend(levels(grid).into_iter().map(|level| (SECTION_LEVEL, level)));
     let header_bytes = HEADER_BYTES + SECTION_BYTES * sections.len();
+    let total = header_bytes
+        + sections
+            .iter()
+            .map(|(_, section)| section.len())
+            .sum::<usize>();
+    if u32::try_from(total).is_err() {
+        return Err(Error {
+            file: None,
+            place: Place::Whole,
+            what: format!("the asset would take {total} bytes, more than 4 GiB"),
+            remedy: "lower --level".into(),
+        });
+    }
     let mut bytes = header(grid, header_bytes, sections.len());
     let mut offset = header_bytes;
     for (kind, section) in &sections {
@@ -31,7 +44,7 @@ pub fn to_bytes(grid: &BakedGrid) -> Vec<u8> {
         bytes.extend(section);
     }
     seal(&mut bytes);
-    bytes
+    Ok(bytes)
 }
 
 /// Writes the checksums of all sections and of the header, as far as the
@@ -141,23 +154,4 @@ fn levels(grid: &BakedGrid) -> Vec<Vec<u8>> {
 fn extend_padded(bytes: &mut Vec<u8>, words: &[u16]) {
     bytes.extend(words.iter().flat_map(|word| word.to_le_bytes()));
     bytes.resize(bytes.len().next_multiple_of(4), 0);
-}
-
-/// Writes a file whole or not at all: to a temporary name in the same
-/// folder, then renamed.
-///
-/// # Errors
-/// When the folder cannot be written to.
-pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Error> {
-    let folder = match path.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        _ => Path::new("."),
-    };
-    let remedy = "choose a folder that exists and can be written to";
-    let fail =
-        |error: std::io::Error| Error::file(path, format!("cannot be written: {error}"), remedy);
-    let mut file = tempfile::NamedTempFile::new_in(folder).map_err(fail)?;
-    file.write_all(bytes).map_err(fail)?;
-    file.persist(path).map_err(|error| fail(error.error))?;
-    Ok(())
 }

@@ -17,8 +17,8 @@ mod normals;
 mod obj;
 mod ply;
 mod polygon;
-mod surface;
 pub mod procedural;
+mod surface;
 
 pub use materials::MAX_MATERIALS;
 pub use normals::CREASE_COSINE;

@@ -1,0 +1,207 @@
+//! Options that several commands share.
+
+use std::str::FromStr;
+
+use clap::{Args, ValueEnum};
+use glam::DVec3;
+
+use super::Failure;
+use crate::bake::GridOptions;
+use crate::geometry::Up;
+
+/// What a mesh or cloud is baked into.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Representation {
+    /// A recursive point grid
+    Grid,
+}
+
+/// Which cells a grid holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum ShellChoice {
+    /// Every cell that the surface touches
+    Fat,
+}
+
+/// How a source becomes an asset.
+#[derive(Clone, Debug, Args)]
+pub struct SourceArgs {
+    /// What to bake
+    #[arg(long = "as", value_enum, default_value = "grid")]
+    pub representation: Representation,
+    /// Subdivisions of each axis of a cell
+    #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u8).range(2..=5))]
+    pub rho: u8,
+    /// Level K has rho^(K + 1) cells on an axis
+    #[arg(long, value_name = "K", default_value_t = 4)]
+    pub level: u8,
+    /// Which cells to keep
+    #[arg(long, value_enum, default_value = "fat")]
+    pub shell: ShellChoice,
+    /// Which source axis points up
+    #[arg(long, value_enum, default_value = "y")]
+    pub up: Up,
+    /// Bits of a sample's attribute
+    #[arg(long, value_name = "BITS", default_value_t = 16, value_parser = clap::value_parser!(u8).range(16..=16))]
+    pub attributes: u8,
+    /// Draw every surface from both sides
+    #[arg(long)]
+    pub two_sided: bool,
+}
+
+impl SourceArgs {
+    /// The grid baker's options.
+    pub fn grid_options(&self) -> GridOptions {
+        GridOptions {
+            rho: self.rho,
+            level: self.level,
+            two_sided: self.two_sided,
+            up: self.up,
+        }
+    }
+}
+
+/// Three numbers, `X,Y,Z`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Triple(pub DVec3);
+
+impl FromStr for Triple {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let numbers: Vec<f64> = text
+            .split(',')
+            .filter_map(|part| part.trim().parse().ok())
+            .collect();
+        match numbers[..] {
+            [x, y, z] if text.split(',').count() == 3 && DVec3::new(x, y, z).is_finite() => {
+                Ok(Self(DVec3::new(x, y, z)))
+            }
+            _ => Err("give three numbers, X,Y,Z".into()),
+        }
+    }
+}
+
+/// Width and height in pixels, `WxH`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Size {
+    /// Columns, 1 to 4096.
+    pub width: u16,
+    /// Rows, 1 to 4096.
+    pub height: u16,
+}
+
+impl FromStr for Size {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let side = |part: &str| {
+            part.parse::<u16>()
+                .ok()
+                .filter(|side| (1..=4096).contains(side))
+        };
+        let parts = text.split_once('x').map(|(w, h)| (side(w), side(h)));
+        match parts {
+            Some((Some(width), Some(height))) => Ok(Self { width, height }),
+            _ => Err("give WxH, each 1 to 4096, as in 240x320".into()),
+        }
+    }
+}
+
+/// Where the camera stands.
+#[derive(Clone, Debug, Args)]
+pub struct ViewArgs {
+    /// Picture size in pixels
+    #[arg(long, value_name = "WxH", default_value = "240x320")]
+    pub size: Size,
+    /// Angle around the y axis, degrees
+    #[arg(long, value_name = "D", default_value_t = 0.0, allow_negative_numbers = true, conflicts_with_all = ["eye", "look_at"])]
+    pub yaw: f64,
+    /// Angle above the horizon, degrees
+    #[arg(long, value_name = "D", default_value_t = 15.0, allow_negative_numbers = true, conflicts_with_all = ["eye", "look_at"])]
+    pub pitch: f64,
+    /// Distance from the centre, in radii of the model
+    #[arg(long, value_name = "R", default_value_t = 2.6, conflicts_with_all = ["eye", "look_at"])]
+    pub distance: f64,
+    /// Eye position in the source's units, y up
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
+    pub eye: Option<Triple>,
+    /// Point to look at; default the model's centre
+    #[arg(
+        long,
+        value_name = "X,Y,Z",
+        allow_hyphen_values = true,
+        requires = "eye"
+    )]
+    pub look_at: Option<Triple>,
+    /// Vertical field of view, degrees
+    #[arg(long, value_name = "D", default_value_t = 53.13)]
+    pub fov: f64,
+}
+
+impl ViewArgs {
+    /// Checks what clap cannot.
+    ///
+    /// # Errors
+    /// When an angle or distance is out of range.
+    pub fn check(&self) -> Result<(), Failure> {
+        let usage = |what: &str| Err(Failure::Usage(what.into()));
+        if !(0.1..=179.5).contains(&self.fov) {
+            return usage("--fov must be 0.1 to 179.5 degrees");
+        }
+        if !(self.yaw.is_finite() && self.pitch.is_finite()) {
+            return usage("--yaw and --pitch must be finite numbers of degrees");
+        }
+        if !(0.0..=1e8).contains(&self.distance) {
+            return usage("--distance must be 0 to 100000000 radii");
+        }
+        Ok(())
+    }
+}
+
+/// Whether and how a light casts shadows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum ShadowChoice {
+    /// No shadows
+    Off,
+    /// Traced rays; for --reference alone
+    Traced,
+}
+
+/// Light and knobs of a frame.
+#[derive(Clone, Debug, Args)]
+pub struct QualityArgs {
+    /// World direction towards the light
+    #[arg(
+        long,
+        value_name = "X,Y,Z",
+        default_value = "1,2,1.5",
+        allow_hyphen_values = true
+    )]
+    pub light: Triple,
+    /// A cell whose projection has no side longer than this is one splat,
+    /// pixels
+    #[arg(long, value_name = "PX", default_value_t = 1.0)]
+    pub splat: f64,
+    /// Shadows
+    #[arg(long, value_enum, default_value = "off")]
+    pub shadows: ShadowChoice,
+}
+
+impl QualityArgs {
+    /// Checks what clap cannot.
+    ///
+    /// # Errors
+    /// When the light has no direction or the splat size is out of range.
+    pub fn check(&self) -> Result<(), Failure> {
+        if self.light.0.try_normalize().is_none() {
+            return Err(Failure::Usage(
+                "--light needs a direction other than 0,0,0".into(),
+            ));
+        }
+        if !(0.0..=4096.0).contains(&self.splat) {
+            return Err(Failure::Usage("--splat must be 0 to 4096 pixels".into()));
+        }
+        Ok(())
+    }
+}

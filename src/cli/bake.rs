@@ -1,0 +1,65 @@
+//! `rhogrid bake`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::Failure;
+use super::args::SourceArgs;
+use super::info::Description;
+use super::model::{bake_asset, load_geometry};
+use crate::asset_file::AssetFile;
+use crate::output::write_whole;
+
+/// Arguments of `rhogrid bake`.
+#[derive(Debug, Args)]
+pub struct BakeArgs {
+    /// Mesh or cloud (.obj, .ply), or builtin:demo
+    input: PathBuf,
+    /// Asset to write
+    #[arg(short, long, value_name = "OUT.rho")]
+    output: PathBuf,
+    #[command(flatten)]
+    source: SourceArgs,
+    /// Keep only as many levels as fit
+    #[arg(long, value_name = "N")]
+    max_bytes: Option<u64>,
+    /// Describe the asset as JSON on stdout
+    #[arg(long)]
+    json: bool,
+}
+
+/// Bakes and writes.
+pub fn run(args: &BakeArgs) -> Result<(), Failure> {
+    let mut source = args.source.clone();
+    let geometry = load_geometry(&args.input, &source)?;
+    let mut asset = bake_asset(&args.input, &geometry, &source)?;
+    while let Some(limit) = args
+        .max_bytes
+        .filter(|&limit| asset.bytes().len() as u64 > limit)
+    {
+        if source.level == 0 {
+            return Err(Failure::failed(
+                format!(
+                    "even level 0 takes {} bytes, more than {limit}",
+                    asset.bytes().len()
+                ),
+                "raise --max-bytes or lower --rho",
+            ));
+        }
+        source.level -= 1;
+        asset = bake_asset(&args.input, &geometry, &source)?;
+    }
+    write_whole(&args.output, |file| file.write_all(asset.bytes()))?;
+    report(args, &asset)
+}
+
+fn report(args: &BakeArgs, asset: &AssetFile) -> Result<(), Failure> {
+    let description = Description::of(asset);
+    if args.json {
+        super::print_json(&description)
+    } else {
+        println!("{}: {}", args.output.display(), description.summary());
+        Ok(())
+    }
+}

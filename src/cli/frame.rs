@@ -1,0 +1,182 @@
+//! One frame: from options to the core's fixed-point camera and light, and to
+//! the float twins that the reference draws with.
+
+use glam::DVec3;
+use rhogrid_core::asset::Grid;
+use rhogrid_core::camera::{Camera, Orbit};
+use rhogrid_core::draw::{Light as CoreLight, Quality, draw, shades_len};
+use rhogrid_core::numbers::{FocalPx, Length, SplatPx, Turns, Unit, Weight};
+use rhogrid_core::stats::Stats;
+use rhogrid_core::target::{Target, frame_hash};
+
+use super::args::{QualityArgs, ShadowChoice, ViewArgs};
+use crate::bake::Cube;
+use crate::picture::Picture;
+use crate::view::{Light, View};
+
+/// Ambient weight of the default light.
+const AMBIENT: f64 = 0.2;
+/// Diffuse weight of the default light.
+const DIFFUSE: f64 = 0.8;
+
+/// The core's camera for a model: angles and distance go through the core's
+/// own orbit, an eye position is moved into the cube.
+pub fn core_camera(view: &ViewArgs, grid: &Grid<'_>, cube: &Cube) -> Camera {
+    let focal_px =
+        FocalPx::saturating_from_num(View::focal_px(view.fov, u32::from(view.size.height)));
+    let (width, height) = (view.size.width, view.size.height);
+    match view.eye {
+        None => {
+            let orbit = Orbit {
+                yaw: turns(view.yaw),
+                pitch: turns(view.pitch),
+                distance: Length::saturating_from_num(
+                    view.distance * grid.radius().to_num::<f64>(),
+                ),
+            };
+            Camera::orbit(&orbit, focal_px, width, height)
+        }
+        Some(_) => {
+            let float = float_view(view, cube);
+            let eye = (float.eye - cube.centre) / cube.half_side;
+            let unit = |v: DVec3| v.to_array().map(Unit::from_num);
+            Camera {
+                eye: eye.to_array().map(Length::saturating_from_num),
+                right: unit(float.right),
+                up: unit(float.up),
+                forward: unit(float.forward),
+                focal_px,
+                width,
+                height,
+                near: Camera::NEAR,
+            }
+        }
+    }
+}
+
+/// The float camera for a model.
+pub fn float_view(view: &ViewArgs, cube: &Cube) -> View {
+    let (eye, right, forward) = match view.eye {
+        None => {
+            let (sin_yaw, cos_yaw) = view.yaw.to_radians().sin_cos();
+            let (sin_pitch, cos_pitch) = view.pitch.to_radians().sin_cos();
+            let back = DVec3::new(sin_yaw * cos_pitch, sin_pitch, cos_yaw * cos_pitch);
+            let eye = cube.centre + back * view.distance * cube.radius;
+            (eye, DVec3::new(cos_yaw, 0.0, -sin_yaw), -back)
+        }
+        Some(eye) => {
+            let towards = view.look_at.map_or(cube.centre, |at| at.0) - eye.0;
+            let forward = towards.try_normalize().unwrap_or(DVec3::NEG_Z);
+            // Looking along the y axis, x stays to the right.
+            let right = forward.cross(DVec3::Y).try_normalize().unwrap_or(DVec3::X);
+            (eye.0, right, forward)
+        }
+    };
+    View {
+        eye,
+        right,
+        up: right.cross(forward),
+        forward,
+        focal_px: View::focal_px(view.fov, u32::from(view.size.height)),
+        width: u32::from(view.size.width),
+        height: u32::from(view.size.height),
+    }
+}
+
+/// Degrees to turns, modulo one.
+fn turns(degrees: f64) -> Turns {
+    let turns = (degrees / 360.0).rem_euclid(1.0);
+    Turns::from_bits((turns * 4_294_967_296.0).round() as u64 as u32)
+}
+
+/// The core's light.
+pub fn core_light(quality: &QualityArgs) -> CoreLight {
+    CoreLight {
+        towards: quality.light.0.normalize().to_array().map(Unit::from_num),
+        ambient: Weight::from_num(AMBIENT),
+        diffuse: Weight::from_num(DIFFUSE),
+    }
+}
+
+/// The reference's light.
+pub fn float_light(quality: &QualityArgs) -> Light {
+    Light {
+        towards: quality.light.0.normalize(),
+        ambient: AMBIENT,
+        diffuse: DIFFUSE,
+        casts: quality.shadows == ShadowChoice::Traced,
+    }
+}
+
+/// The core's knobs.
+pub fn core_quality(quality: &QualityArgs) -> Quality {
+    Quality {
+        splat: SplatPx::saturating_from_num(quality.splat),
+    }
+}
+
+/// A drawn frame.
+#[derive(Clone, Debug)]
+pub struct Frame {
+    /// Columns.
+    pub width: u16,
+    /// Rows.
+    pub height: u16,
+    /// RGB565, row-major.
+    pub colour: Vec<u16>,
+    /// 16-bit depth, zero where nothing is drawn.
+    pub depth: Vec<u16>,
+    /// Work done.
+    pub stats: Stats,
+    /// Median time of the draw call.
+    pub time_ns: u64,
+}
+
+impl Frame {
+    /// The hash that is equal on every machine.
+    pub fn hash(&self) -> u32 {
+        frame_hash(&self.colour)
+    }
+
+    /// The frame as a picture.
+    pub fn picture(&self) -> Picture {
+        let drawn = self.depth.iter().map(|&depth| depth != 0).collect();
+        Picture::from_rgb565(
+            u32::from(self.width),
+            u32::from(self.height),
+            &self.colour,
+            drawn,
+        )
+    }
+}
+
+/// Draws a frame `repeats` times (at least once) and keeps the median time.
+pub fn draw_frame(
+    grid: &Grid<'_>,
+    camera: &Camera,
+    light: &CoreLight,
+    quality: &Quality,
+    repeats: u32,
+) -> Frame {
+    let pixels = usize::from(camera.width) * usize::from(camera.height);
+    let (mut colour, mut depth) = (vec![0; pixels], vec![0; pixels]);
+    let mut shades = vec![0; shades_len(grid.materials().len())];
+    let mut stats = Stats::default();
+    let mut times = Vec::new();
+    for _ in 0..repeats.max(1) {
+        let mut target = Target::new(camera.width, camera.height, &mut colour, &mut depth)
+            .expect("buffers are as long as the picture");
+        let start = std::time::Instant::now();
+        stats = draw(grid, camera, light, quality, &mut shades, &mut target);
+        times.push(start.elapsed().as_nanos() as u64);
+    }
+    times.sort_unstable();
+    Frame {
+        width: camera.width,
+        height: camera.height,
+        colour,
+        depth,
+        stats,
+        time_ns: times[times.len() / 2],
+    }
+}

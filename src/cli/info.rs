@@ -1,0 +1,125 @@
+//! `rhogrid info`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use rhogrid_core::asset::Shell;
+use serde::Serialize;
+
+use super::Failure;
+use crate::asset_file::AssetFile;
+
+/// Arguments of `rhogrid info`.
+#[derive(Debug, Args)]
+pub struct InfoArgs {
+    /// Asset to describe
+    file: PathBuf,
+    /// One JSON object on stdout
+    #[arg(long)]
+    json: bool,
+}
+
+/// What an asset holds.
+#[derive(Debug, Serialize)]
+pub struct Description {
+    kind: &'static str,
+    rho: u8,
+    /// Level k has rho^(k + 1) cells on an axis; -1 is the root alone.
+    level: i16,
+    /// The level of the whole file, where this one was cut.
+    stored_level: i16,
+    shell: &'static str,
+    two_sided: bool,
+    up: &'static str,
+    cells_per_depth: Vec<usize>,
+    /// Non-empty subcells of an intermediate cell, in the mean.
+    alpha: Option<f64>,
+    materials: Vec<[u8; 3]>,
+    centre: [f64; 3],
+    half_side: f64,
+    radius: f64,
+    attribute_bits: u8,
+    bytes_total: usize,
+    /// Everything counted: masks, links, attributes, tables, header.
+    bits_per_leaf_sample: f64,
+}
+
+impl Description {
+    /// Describes an asset.
+    pub fn of(asset: &AssetFile) -> Self {
+        let grid = asset.grid();
+        let cells: Vec<usize> = grid.levels().iter().map(|level| level.cells()).collect();
+        let all: usize = cells.iter().sum();
+        let leaves = cells.last().copied().unwrap_or(1);
+        let intermediate = all - leaves;
+        let cube = asset.cube();
+        Self {
+            kind: "grid",
+            rho: grid.rho(),
+            level: i16::from(grid.depth()) - 1,
+            stored_level: i16::from(grid.stored_depth()) - 1,
+            shell: match grid.shell() {
+                Shell::Fat => "fat",
+                Shell::Thin => "thin",
+            },
+            two_sided: grid.two_sided(),
+            up: asset.up().name(),
+            alpha: (intermediate > 0).then(|| (all - 1) as f64 / intermediate as f64),
+            cells_per_depth: cells,
+            materials: grid.materials().to_vec(),
+            centre: cube.centre.to_array(),
+            half_side: cube.half_side,
+            radius: cube.radius,
+            attribute_bits: 16,
+            bytes_total: asset.bytes().len(),
+            bits_per_leaf_sample: asset.bytes().len() as f64 * 8.0 / leaves as f64,
+        }
+    }
+
+    /// One line for people.
+    pub fn summary(&self) -> String {
+        format!(
+            "{} rho {} level {}, {} leaf samples, {} bytes, {:.2} bits a leaf sample",
+            self.kind,
+            self.rho,
+            self.level,
+            self.cells_per_depth.last().unwrap_or(&0),
+            self.bytes_total,
+            self.bits_per_leaf_sample
+        )
+    }
+}
+
+/// Opens and describes.
+pub fn run(args: &InfoArgs) -> Result<(), Failure> {
+    let asset = AssetFile::load(&args.file)?;
+    let description = Description::of(&asset);
+    if args.json {
+        return super::print_json(&description);
+    }
+    println!("{}: {}", args.file.display(), description.summary());
+    if description.level < description.stored_level {
+        println!(
+            "cut: the whole file reaches level {}",
+            description.stored_level
+        );
+    }
+    println!("shell      {}", description.shell);
+    println!(
+        "two-sided  {}",
+        if description.two_sided { "yes" } else { "no" }
+    );
+    println!("source up  {}", description.up);
+    println!("cells      {:?} by depth", description.cells_per_depth);
+    if let Some(alpha) = description.alpha {
+        println!("alpha      {alpha:.2} non-empty subcells a cell");
+    }
+    println!("materials  {:?}", description.materials);
+    let [x, y, z] = description.centre;
+    println!("centre     {x} {y} {z}, source units, y up");
+    println!(
+        "half side  {}, radius {}",
+        description.half_side, description.radius
+    );
+    Ok(())
+}

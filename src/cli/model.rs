@@ -1,0 +1,109 @@
+//! What a command's input becomes: an asset, with the geometry it came from
+//! where there is one.
+
+use std::path::Path;
+
+use indicatif::{ProgressBar, ProgressStyle};
+
+use super::Failure;
+use super::args::SourceArgs;
+use crate::asset_file::AssetFile;
+use crate::bake::{self, Progress, writer};
+use crate::error::Error;
+use crate::geometry::Geometry;
+use crate::import;
+
+/// Names the built-in scene where a file is asked for.
+pub const DEMO: &str = "builtin:demo";
+
+/// An asset and its source.
+#[derive(Debug)]
+pub struct Model {
+    /// The asset.
+    pub asset: AssetFile,
+    /// What it was baked from; a `.rho` file keeps no geometry.
+    pub geometry: Option<Geometry>,
+}
+
+impl Model {
+    /// Opens a `.rho` file, or loads and bakes anything else.
+    ///
+    /// # Errors
+    /// When the input cannot be read or baked.
+    pub fn open(input: &Path, source: &SourceArgs) -> Result<Self, Failure> {
+        if is_asset(input) {
+            return Ok(Self {
+                asset: AssetFile::load(input)?,
+                geometry: None,
+            });
+        }
+        let geometry = load_geometry(input, source)?;
+        let asset = bake_asset(input, &geometry, source)?;
+        Ok(Self {
+            asset,
+            geometry: Some(geometry),
+        })
+    }
+}
+
+/// Whether a file calls itself an asset, by magic or by name.
+fn is_asset(input: &Path) -> bool {
+    let by_name = input
+        .extension()
+        .is_some_and(|extension| extension == "rho");
+    let magic = || {
+        let mut first = [0; 4];
+        let mut file = std::fs::File::open(input).ok()?;
+        std::io::Read::read_exact(&mut file, &mut first).ok()?;
+        Some(first == rhogrid_core::asset::MAGIC)
+    };
+    by_name || magic().unwrap_or(false)
+}
+
+/// Loads a mesh or cloud, or makes the built-in scene, y up.
+pub fn load_geometry(input: &Path, source: &SourceArgs) -> Result<Geometry, Error> {
+    if input == Path::new(DEMO) {
+        return Ok(Geometry::Mesh(import::procedural::demo()).turned(source.up));
+    }
+    let imported = import::load(input)?;
+    for note in &imported.notes {
+        eprintln!("{}: note: {note}", input.display());
+    }
+    Ok(imported.geometry.turned(source.up))
+}
+
+/// Bakes geometry, with a progress bar where stderr is a terminal.
+pub fn bake_asset(
+    input: &Path,
+    geometry: &Geometry,
+    source: &SourceArgs,
+) -> Result<AssetFile, Failure> {
+    let bar = progress_bar();
+    let options = source.grid_options();
+    let baked = bake::grid(geometry, &options, &|progress| match progress {
+        Progress::Level { cells } => bar.set_length(bar.length().unwrap_or(0) + cells),
+        Progress::Done { cells } => bar.inc(cells),
+    });
+    bar.finish_and_clear();
+    let baked = baked.map_err(|error| Error {
+        file: Some(input.to_path_buf()),
+        ..error
+    })?;
+    let bytes = writer::to_bytes(&baked).map_err(|error| Error {
+        file: Some(input.to_path_buf()),
+        ..error
+    })?;
+    AssetFile::new(&bytes).map_err(|error| {
+        Failure::failed(
+            format!("{}: baked into a bad asset: {error}", input.display()),
+            "report this",
+        )
+    })
+}
+
+/// A bar on a terminal's stderr; silent elsewhere.
+pub fn progress_bar() -> ProgressBar {
+    let style = ProgressStyle::with_template("{bar:40} {pos}/{len} {elapsed}")
+        .unwrap_or_else(|_| ProgressStyle::default_bar());
+    ProgressBar::new(0).with_style(style)
+}

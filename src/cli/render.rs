@@ -1,0 +1,316 @@
+//! `rhogrid render`.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use rhogrid_core::camera::Camera;
+use rhogrid_core::projection::DepthRange;
+use serde::Serialize;
+
+use super::Failure;
+use super::args::{QualityArgs, ShadowChoice, SourceArgs, ViewArgs};
+use super::frame::{
+    Frame, core_camera, core_light, core_quality, draw_frame, float_light, float_view,
+};
+use super::model::{Model, load_geometry, progress_bar};
+use crate::asset_file::AssetFile;
+use crate::bake::Cube;
+use crate::geometry::Geometry;
+use crate::measure::{Depths, ReferenceMeasures, against_reference};
+use crate::reference::{DEFAULT_SAMPLES_PER_AXIS, Reference, Scene, render};
+
+/// Arguments of `rhogrid render`.
+#[derive(Debug, Args)]
+pub struct RenderArgs {
+    /// Asset (.rho), mesh or cloud (.obj, .ply), or builtin:demo
+    input: PathBuf,
+    /// Picture to write; with --orbit, OUT-000.png and so on
+    #[arg(short, long, value_name = "OUT.png")]
+    output: PathBuf,
+    #[command(flatten)]
+    source: SourceArgs,
+    #[command(flatten)]
+    view: ViewArgs,
+    #[command(flatten)]
+    quality: QualityArgs,
+    /// Draw the original geometry with the float reference instead
+    #[arg(long, conflicts_with_all = ["compare", "frames"])]
+    reference: bool,
+    /// Measure the picture against the float reference, too
+    #[arg(long)]
+    compare: bool,
+    /// Draw N pictures around the y axis
+    #[arg(long, value_name = "N", conflicts_with_all = ["eye", "look_at"], value_parser = clap::value_parser!(u32).range(1..=10000))]
+    orbit: Option<u32>,
+    /// Draw each picture N times and give the median time
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    frames: u32,
+    /// One JSON object for each picture on stdout
+    #[arg(long)]
+    json: bool,
+    /// Say more of what was drawn
+    #[arg(short, long)]
+    verbose: bool,
+}
+
+/// What was drawn, and what it cost.
+#[derive(Debug, Serialize)]
+struct Report {
+    output: PathBuf,
+    width: u16,
+    height: u16,
+    yaw: f64,
+    frame_hash: String,
+    nodes_visited: u32,
+    nodes_back_facing: u32,
+    nodes_outside: u32,
+    samples_drawn: u32,
+    pixels_written: u32,
+    time_ns: u64,
+    frames: u32,
+    #[serde(flatten)]
+    measures: Option<ReferenceMeasures>,
+}
+
+/// Draws and writes one picture or an orbit of them.
+pub fn run(args: &RenderArgs) -> Result<(), Failure> {
+    args.view.check()?;
+    args.quality.check()?;
+    if args.quality.shadows != ShadowChoice::Off && !args.reference {
+        return Err(Failure::Usage(
+            "--shadows traced is for --reference; grids are drawn without shadows".into(),
+        ));
+    }
+    if args
+        .input
+        .extension()
+        .is_some_and(|extension| extension == "toml")
+    {
+        return Err(Failure::Usage(
+            "scene files are not supported; give one asset or mesh".into(),
+        ));
+    }
+    let count = args.orbit.unwrap_or(1);
+    if args.reference {
+        let geometry = source_geometry(args)?;
+        let scene = Scene::new(&geometry, args.source.two_sided);
+        let cube = Cube::of(&geometry)?;
+        return (0..count).try_for_each(|index| draw_reference(args, &scene, &cube, index));
+    }
+    let model = Model::open(&args.input, &args.source)?;
+    let scene = match (&model.geometry, args.compare) {
+        (_, false) => None,
+        (Some(geometry), true) => Some(Scene::new(geometry, model.asset.grid().two_sided())),
+        (None, true) => return Err(no_geometry(&args.input)),
+    };
+    (0..count).try_for_each(|index| draw_grid(args, &model.asset, scene.as_ref(), index))
+}
+
+fn no_geometry(input: &Path) -> Failure {
+    Failure::failed(
+        format!(
+            "{}: an asset keeps no original geometry to compare with",
+            input.display()
+        ),
+        "give the mesh or cloud that it was baked from",
+    )
+}
+
+fn source_geometry(args: &RenderArgs) -> Result<Geometry, Failure> {
+    if args
+        .input
+        .extension()
+        .is_some_and(|extension| extension == "rho")
+    {
+        return Err(no_geometry(&args.input));
+    }
+    Ok(load_geometry(&args.input, &args.source)?)
+}
+
+/// The view of the index-th picture.
+fn view_at(args: &RenderArgs, index: u32) -> ViewArgs {
+    let step = args.orbit.map_or(0.0, |count| 360.0 / f64::from(count));
+    ViewArgs {
+        yaw: args.view.yaw + step * f64::from(index),
+        ..args.view.clone()
+    }
+}
+
+/// The name of the index-th picture.
+fn output_at(args: &RenderArgs, index: u32) -> PathBuf {
+    if args.orbit.is_none() {
+        return args.output.clone();
+    }
+    let stem = args
+        .output
+        .file_stem()
+        .unwrap_or_default()
+        .to_string_lossy();
+    args.output.with_file_name(format!("{stem}-{index:03}.png"))
+}
+
+fn draw_reference(
+    args: &RenderArgs,
+    scene: &Scene,
+    cube: &Cube,
+    index: u32,
+) -> Result<(), Failure> {
+    let view = view_at(args, index);
+    let output = output_at(args, index);
+    let reference = trace(args, &view, scene, cube);
+    reference.picture().save_png(&output)?;
+    if args.json {
+        let size = serde_json::json!({
+            "output": output, "width": reference.width, "height": reference.height,
+        });
+        return super::print_json(&size);
+    }
+    println!(
+        "{}: reference, {}x{}",
+        output.display(),
+        reference.width,
+        reference.height
+    );
+    Ok(())
+}
+
+fn trace(args: &RenderArgs, view: &ViewArgs, scene: &Scene, cube: &Cube) -> Reference {
+    let bar = progress_bar();
+    bar.set_length(u64::from(view.size.height));
+    let light = float_light(&args.quality);
+    let reference = render(
+        scene,
+        &float_view(view, cube),
+        &light,
+        DEFAULT_SAMPLES_PER_AXIS,
+        &|rows| {
+            bar.inc(u64::from(rows));
+        },
+    );
+    bar.finish_and_clear();
+    reference
+}
+
+fn draw_grid(
+    args: &RenderArgs,
+    asset: &AssetFile,
+    scene: Option<&Scene>,
+    index: u32,
+) -> Result<(), Failure> {
+    let (grid, cube) = (asset.grid(), asset.cube());
+    let view = view_at(args, index);
+    let output = output_at(args, index);
+    let camera = core_camera(&view, &grid, &cube);
+    let quality = core_quality(&args.quality);
+    let frame = draw_frame(
+        &grid,
+        &camera,
+        &core_light(&args.quality),
+        &quality,
+        args.frames,
+    );
+    let picture = frame.picture();
+    picture.save_png(&output)?;
+    let measures = scene.map(|scene| {
+        let reference = trace(args, &view, scene, &cube);
+        let (w, tolerance) = depths(&frame, &camera, asset, args.quality.splat);
+        let depths = Depths {
+            w: &w,
+            tolerance: &tolerance,
+        };
+        against_reference(&picture, Some(depths), &reference)
+    });
+    let measures = measures
+        .transpose()
+        .map_err(|_| Failure::failed("sizes differ", "report this"))?;
+    print(
+        args,
+        &Report::new(output, view.yaw, &frame, args.frames, measures),
+    )
+}
+
+/// Each pixel's w in source units, and how much deeper than the reference is
+/// see-through: two diagonals of the drawn cell, which is a leaf or as large
+/// as a splat, and one step of depth.
+fn depths(frame: &Frame, camera: &Camera, asset: &AssetFile, splat: f64) -> (Vec<f32>, Vec<f32>) {
+    let grid = asset.grid();
+    let unit = asset.cube().half_side;
+    let range = DepthRange::of(camera);
+    let (near, far) = (range.near.to_num::<f64>(), range.far.to_num::<f64>());
+    let steps = (1.0 / near - 1.0 / far) / 65534.0;
+    let leaf = 2.0 / f64::from(grid.rho()).powi(i32::from(grid.depth()));
+    let focal = camera.focal_px.to_num::<f64>();
+    let pixel = |depth: &u16| {
+        let w = 1.0 / (1.0 / far + f64::from(depth.saturating_sub(1)) * steps);
+        let cell = leaf.max(splat * w / focal);
+        let tolerance = 2.0 * 3f64.sqrt() * cell + w * w * steps;
+        ((w * unit) as f32, (tolerance * unit) as f32)
+    };
+    frame.depth.iter().map(pixel).unzip()
+}
+
+impl Report {
+    fn new(
+        output: PathBuf,
+        yaw: f64,
+        frame: &Frame,
+        frames: u32,
+        measures: Option<ReferenceMeasures>,
+    ) -> Self {
+        Self {
+            output,
+            width: frame.width,
+            height: frame.height,
+            yaw,
+            frame_hash: format!("{:08x}", frame.hash()),
+            nodes_visited: frame.stats.nodes_visited,
+            nodes_back_facing: frame.stats.nodes_back_facing,
+            nodes_outside: frame.stats.nodes_outside,
+            samples_drawn: frame.stats.samples_drawn,
+            pixels_written: frame.stats.pixels_written,
+            time_ns: frame.time_ns,
+            frames,
+            measures,
+        }
+    }
+}
+
+fn print(args: &RenderArgs, report: &Report) -> Result<(), Failure> {
+    if args.json {
+        return super::print_json(report);
+    }
+    println!(
+        "{}: {}x{}, frame {}, {} samples, {} pixels written, {:.2} ms",
+        report.output.display(),
+        report.width,
+        report.height,
+        report.frame_hash,
+        report.samples_drawn,
+        report.pixels_written,
+        report.time_ns as f64 / 1e6
+    );
+    if args.verbose {
+        println!(
+            "  nodes: {} visited, {} back-facing, {} outside; median of {} frames",
+            report.nodes_visited, report.nodes_back_facing, report.nodes_outside, report.frames
+        );
+    }
+    if let Some(measures) = &report.measures {
+        println!("  against the reference: {}", describe(measures));
+    }
+    Ok(())
+}
+
+fn describe(measures: &ReferenceMeasures) -> String {
+    let decibels =
+        |value: Option<f64>| value.map_or("identical".into(), |db| format!("{db:.2} dB"));
+    format!(
+        "psnr_inside {}, psnr {}, ssim {:.4}, rmse {:.2}, {} holes, {} see-through",
+        decibels(measures.psnr_inside),
+        decibels(measures.frame.psnr),
+        measures.frame.ssim,
+        measures.frame.rmse,
+        measures.holes,
+        measures.see_through.unwrap_or(0)
+    )
+}
