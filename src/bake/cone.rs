@@ -1,7 +1,7 @@
 //! Normal cones and two-sided flags of intermediate cells.
 
 use glam::Vec3;
-use rhogrid_core::asset::node::{APERTURE_ALL, APERTURE_COSINE, Flags};
+use rhogrid_core::asset::node::{APERTURE_ALL, APERTURE_COSINE};
 use rhogrid_core::normal::{COMPONENT_BITS, decode};
 
 /// Opposed faces: a leaf whose sample faces one way while another face in it
@@ -13,10 +13,20 @@ pub(super) fn decoded(code: u16) -> Vec3 {
     Vec3::from_array(decode(code).map(|c| c as f32 / (1 << COMPONENT_BITS) as f32))
 }
 
-/// Whether a leaf with this sample normal holds a face that turns away from
-/// it.
-pub(super) fn is_opposed(sample: Vec3, mut faces: impl Iterator<Item = Vec3>) -> bool {
-    faces.any(|face| face.dot(sample) < OPPOSED_COSINE)
+/// Bent normals: a sample whose shading normal leans more than 8 degrees
+/// away from its own face would vanish while the face is still seen.
+const BENT_COSINE: f32 = 0.99;
+
+/// Whether a leaf must be drawn even where its sample's normal faces away.
+/// `own` is the direction of the face that the sample lies on, `faces` those
+/// of all that touch the leaf.
+pub(super) fn needs_both_sides(
+    sample: Vec3,
+    own: Option<Vec3>,
+    mut faces: impl Iterator<Item = Vec3>,
+) -> bool {
+    own.is_some_and(|own| own.dot(sample) < BENT_COSINE)
+        || faces.any(|face| face.dot(sample) < OPPOSED_COSINE)
 }
 
 /// The smallest aperture about a code's direction that holds all faces.
@@ -28,12 +38,4 @@ pub(super) fn aperture(code: u16, faces: impl Iterator<Item = Vec3>) -> u8 {
     let fits = |&bound: &u16| cosine - 1e-6 >= f32::from(bound) / 32768.0;
     let first = APERTURE_COSINE.iter().position(fits);
     first.map_or(APERTURE_ALL, |aperture| aperture as u8)
-}
-
-/// The flags of a node.
-pub(super) fn flags(aperture: u8, two_sided: bool) -> Flags {
-    Flags {
-        aperture: if two_sided { APERTURE_ALL } else { aperture },
-        two_sided,
-    }
 }

@@ -7,11 +7,11 @@
 
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
-use rhogrid_core::asset::node::{halves, occupied};
+use rhogrid_core::asset::node::{APERTURE_ALL, Flags, halves};
 use rhogrid_core::asset::{Rgb, Shell};
 use rhogrid_core::normal::encode;
 
-use super::surface::{Aabb, Surface};
+use super::surface::{Aabb, Sample, Surface};
 use super::{Cube, GridOptions, Progress, cone};
 use crate::geometry::Up;
 
@@ -61,7 +61,6 @@ struct Cell {
 /// A cell's record and children.
 struct Subdivision {
     record: Vec<u16>,
-    two_sided: bool,
     children: Vec<Cell>,
 }
 
@@ -89,7 +88,6 @@ pub(super) fn bake<S: Surface>(
         attribute,
         neighbourhood: everything,
     }];
-    let mut two_sided: Vec<Vec<bool>> = Vec::new();
     for above in 0..depth {
         progress(Progress::Level {
             cells: cells.len() as u64,
@@ -118,36 +116,9 @@ pub(super) fn bake<S: Surface>(
                 .flat_map(|cell| cell.children.iter().map(|child| child.attribute))
                 .collect(),
         });
-        two_sided.push(done.iter().map(|cell| cell.two_sided).collect());
         cells = done.into_iter().flat_map(|cell| cell.children).collect();
     }
-    spread_two_sided(options.rho, &mut levels, &two_sided);
     levels
-}
-
-/// Marks every ancestor of a two-sided node two-sided, so that none of them
-/// is skipped as facing away.
-fn spread_two_sided(rho: u8, levels: &mut [BakedLevel], two_sided: &[Vec<bool>]) {
-    let size = halves(rho);
-    let Some(mut below) = two_sided.last().cloned() else {
-        return;
-    };
-    for (level, own) in levels.iter_mut().skip(1).zip(two_sided).rev().skip(1) {
-        let mut children = below.iter();
-        let mut flags = Vec::with_capacity(own.len());
-        for (record, &own) in level.nodes.chunks_exact_mut(size).zip(own) {
-            let count = occupied(rho, record) as usize;
-            let marked = children
-                .by_ref()
-                .take(count)
-                .fold(own, |any, &child| any | child);
-            if marked && let Some(last) = record.last_mut() {
-                *last |= cone::flags(0, true).to_last(rho);
-            }
-            flags.push(marked);
-        }
-        below = flags;
-    }
 }
 
 impl<S: Surface> Baker<'_, S> {
@@ -161,7 +132,7 @@ impl<S: Surface> Baker<'_, S> {
             .collect();
         let mut record = vec![0u16; halves(self.options.rho)];
         let mut children = Vec::new();
-        let mut opposed = false;
+        let mut two_sided = self.options.two_sided;
         for bit in 0..rho.pow(3) {
             let within = [bit % rho, bit / rho % rho, bit / (rho * rho)];
             let place = [0, 1, 2].map(|i| cell.place[i] * rho + within[i]);
@@ -178,13 +149,15 @@ impl<S: Surface> Baker<'_, S> {
             }
             record[bit as usize / 16] |= 1 << (bit % 16);
             let centre = bounds.min.midpoint(bounds.max);
-            let (normal, material) = self.nearest(centre, &near);
-            if leaves && !opposed {
-                opposed = cone::is_opposed(normal, self.faces(&near, &bounds));
+            let (primitive, sample) = self.nearest(centre, &near);
+            if leaves && !two_sided {
+                let own = self.surface.facing(primitive);
+                let faces = self.faces(&near, &bounds);
+                two_sided = cone::needs_both_sides(sample.normal, own, faces);
             }
             children.push(Cell {
                 place,
-                attribute: attribute(normal, material),
+                attribute: attribute(&sample),
                 neighbourhood: if leaves {
                     Vec::new()
                 } else {
@@ -193,16 +166,18 @@ impl<S: Surface> Baker<'_, S> {
             });
         }
         let own = boxes(cell.place, axis / rho).0;
-        let two_sided = self.options.two_sided || opposed;
-        let aperture = cone::aperture(cell.attribute, self.faces(&bounded, &own));
-        if let Some(last) = record.last_mut() {
-            *last |= cone::flags(aperture, two_sided).to_last(self.options.rho);
-        }
-        Subdivision {
-            record,
+        let aperture = match self.options.two_sided {
+            true => APERTURE_ALL,
+            false => cone::aperture(cell.attribute, self.faces(&bounded, &own)),
+        };
+        let flags = Flags {
+            aperture,
             two_sided,
-            children,
+        };
+        if let Some(last) = record.last_mut() {
+            *last |= flags.to_last(self.options.rho);
         }
+        Subdivision { record, children }
     }
 
     /// The directions of the faces that touch a cell.
@@ -216,18 +191,22 @@ impl<S: Surface> Baker<'_, S> {
             .filter_map(|(primitive, _)| self.surface.facing(*primitive))
     }
 
-    /// Normal and material of the point nearest to a centre.
-    fn nearest(&self, centre: DVec3, near: &[(u32, Aabb)]) -> (Vec3, u8) {
-        let mut best = f64::INFINITY;
-        let mut found = (Vec3::Y, 0);
+    /// The nearest point to a centre, and the primitive that it lies on.
+    fn nearest(&self, centre: DVec3, near: &[(u32, Aabb)]) -> (u32, Sample) {
+        let mut found = (
+            0,
+            Sample {
+                distance_squared: f64::INFINITY,
+                normal: Vec3::Y,
+                material: 0,
+            },
+        );
         for (primitive, own) in near {
-            if own.distance_squared(centre) >= best {
-                continue;
-            }
-            let sample = self.surface.sample_at(*primitive, centre);
-            if sample.distance_squared < best {
-                best = sample.distance_squared;
-                found = (sample.normal, sample.material);
+            if own.distance_squared(centre) < found.1.distance_squared {
+                let sample = self.surface.sample_at(*primitive, centre);
+                if sample.distance_squared < found.1.distance_squared {
+                    found = (*primitive, sample);
+                }
             }
         }
         found
@@ -238,8 +217,7 @@ impl<S: Surface> Baker<'_, S> {
             .iter()
             .map(|&primitive| (primitive, self.surface.bounds(primitive)))
             .collect();
-        let (normal, material) = self.nearest(centre, &bounded);
-        attribute(normal, material)
+        attribute(&self.nearest(centre, &bounded).1)
     }
 }
 
@@ -266,9 +244,10 @@ fn boxes(place: [u32; 3], axis: u32) -> (Aabb, Aabb) {
     )
 }
 
-fn attribute(normal: Vec3, material: u8) -> u16 {
-    let scaled = normal
+fn attribute(sample: &Sample) -> u16 {
+    let scaled = sample
+        .normal
         .to_array()
         .map(|c| (f64::from(c) * f64::from(1 << 26)) as i32);
-    encode(scaled) | u16::from(material) << 13
+    encode(scaled) | u16::from(sample.material) << 13
 }

@@ -48,7 +48,8 @@ pub const APERTURE_COSINE: [u16; 15] = [
 pub struct Flags {
     /// Cone aperture, 0 to 15: see [`APERTURE_SINE`].
     pub aperture: u8,
-    /// Whether the cell's samples are drawn from both sides.
+    /// Whether the cell's leaves are drawn even where their own normals face
+    /// away: thin sheets, and shading normals bent beyond their faces.
     pub two_sided: bool,
 }
 

@@ -6,9 +6,9 @@
 //! where rounding or a cell's size leaves doubt, cells count as facing the
 //! eye.
 
-use crate::asset::node::{APERTURE_ALL, APERTURE_COSINE, APERTURE_SINE, Flags};
+use crate::asset::node::{APERTURE_COSINE, APERTURE_SINE, Flags};
 use crate::camera::Camera;
-use crate::normal::{COMPONENT_BITS, decode};
+use crate::normal::{COMPONENT_BITS, OPPOSITE, decode};
 use crate::numbers::bit_length;
 
 /// The scale of eye space and the root's place in it.
@@ -63,9 +63,6 @@ pub(crate) fn along(code: u16, view: [i32; 3]) -> i32 {
 /// sqrt(v^2 - c^2) - radius. The cell faces away where that is positive.
 /// Squared, to need no root: (c cos t - radius)^2 > sin^2 t (v^2 - c^2).
 pub(crate) fn cone(flags: Flags, code: u16, view: [i32; 3], radius: i32) -> Facing {
-    if flags.two_sided || flags.aperture == APERTURE_ALL {
-        return Facing::Maybe;
-    }
     let aperture = usize::from(flags.aperture);
     let (Some(&sine), Some(&cosine)) = (APERTURE_SINE.get(aperture), APERTURE_COSINE.get(aperture))
     else {
@@ -85,5 +82,34 @@ pub(crate) fn cone(flags: Flags, code: u16, view: [i32; 3], radius: i32) -> Faci
         Facing::Away
     } else {
         Facing::Maybe
+    }
+}
+
+/// Upper bound of a view vector's length, within 13%: the longest component
+/// and half of the others.
+#[inline(always)]
+fn length(view: [i32; 3]) -> i32 {
+    let [x, y, z] = view.map(i32::abs);
+    let longest = x.max(y).max(z);
+    longest + (x + y + z - longest) / 2
+}
+
+/// How far along its normal a leaf may lie behind its horizon and still be
+/// drawn: the block's radius, because the view vector is the block's, and
+/// 3/64 of the distance, which is the sine of the code's 2.5 degrees.
+#[inline(always)]
+pub(crate) fn horizon(view: [i32; 3], radius: i32) -> i32 {
+    radius + length(view) * 3 / 64
+}
+
+/// The attribute of a sample that is drawn from both sides: turned to the
+/// opposite normal where its own faces away by more than some 20 degrees.
+/// Less than that is a shading normal bent beyond a face that is seen.
+#[inline(always)]
+pub(crate) fn turned(attribute: u16, view: [i32; 3]) -> u16 {
+    if along(attribute, view) > length(view) * 11 / 32 {
+        attribute ^ OPPOSITE
+    } else {
+        attribute
     }
 }

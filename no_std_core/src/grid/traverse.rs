@@ -4,13 +4,12 @@
 //! Source: Duguet and Drettakis 2003, 5.1 (centres by additions) and 5.2
 //! (multi-level stop, bounds of a projected cell).
 
-use super::facing::{EyeSpace, Facing, along, cone};
+use super::facing::{EyeSpace, Facing, along, cone, horizon, turned};
 use super::tables::{LevelTable, Point, Tables};
 use crate::asset::Grid;
 use crate::asset::node::{Flags, halves, occupied};
 use crate::camera::Camera;
 use crate::draw::Quality;
-use crate::normal::OPPOSITE;
 use crate::projection::Projection;
 use crate::reciprocal::{Reciprocal, reciprocal};
 use crate::shade::Shader;
@@ -151,7 +150,7 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
                 return;
             }
             if 2 * print.extent.half[0].max(print.extent.half[1]) <= self.splat_side {
-                let attribute = turned(attribute, cell.view, flags);
+                let attribute = turned(attribute, cell.view);
                 self.splat(&print, print.depth, (print.x, print.y), attribute, output);
                 return;
             }
@@ -239,7 +238,7 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
             self.footprint(cell.centre, &table.half_edges, nearest)
                 .extent
         });
-        let limit = facing_limit(cell.view, self.extents(cell.depth).2);
+        let limit = horizon(cell.view, self.extents(cell.depth).2);
         for (&half, displacements) in record.iter().zip(table.displacements.chunks(16)) {
             let mut bits = half;
             for displacement in displacements {
@@ -247,15 +246,19 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
                     let Some(&attribute) = attributes.next() else {
                         return;
                     };
-                    let behind = along(attribute, cell.view) > limit;
-                    if !behind || flags.two_sided {
-                        let leaf = Cell {
-                            centre: cell.centre.plus(*displacement),
-                            ..*cell
-                        };
-                        let attribute = turned(attribute, cell.view, flags);
-                        self.leaf(&leaf, table.half_edges, attribute, extent, output);
-                    }
+                    let attribute = match along(attribute, cell.view) > limit {
+                        false => attribute,
+                        true if flags.two_sided => turned(attribute, cell.view),
+                        true => {
+                            bits >>= 1;
+                            continue;
+                        }
+                    };
+                    let leaf = Cell {
+                        centre: cell.centre.plus(*displacement),
+                        ..*cell
+                    };
+                    self.leaf(&leaf, table.half_edges, attribute, extent, output);
                 }
                 bits >>= 1;
             }
@@ -386,25 +389,4 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
             || print.y + half_y < pixel(band.top)
             || print.y - half_y > pixel(band.bottom)
     }
-}
-
-/// A two-sided sample that faces away shows its other side.
-#[inline(always)]
-fn turned(attribute: u16, view: [i32; 3], flags: Flags) -> u16 {
-    if flags.two_sided && along(attribute, view) > 0 {
-        attribute ^ OPPOSITE
-    } else {
-        attribute
-    }
-}
-
-/// How far along its normal a leaf may lie behind the eye's horizon and still
-/// be drawn: the block's radius (the view vector is the block's) and
-/// 1/16 of the distance, for the 2.5 degrees of the code and the bend of the
-/// surface inside the cell.
-#[inline(always)]
-fn facing_limit(view: [i32; 3], radius: i32) -> i32 {
-    let [x, y, z] = view.map(i32::abs);
-    let longest = x.max(y).max(z);
-    radius + longest / 16
 }
