@@ -164,8 +164,10 @@ impl ViewArgs {
 pub enum ShadowChoice {
     /// No shadows
     Off,
-    /// Traced rays; for --reference alone
-    Traced,
+    /// A shadow map of its own; --reference traces rays
+    TwoPass,
+    /// A shadow map in the same pass; --reference traces rays
+    OnePass,
 }
 
 /// Light and knobs of a frame.

@@ -104,7 +104,7 @@ pub fn float_light(quality: &QualityArgs) -> Light {
         towards: quality.light.0.normalize(),
         ambient: AMBIENT,
         diffuse: DIFFUSE,
-        casts: quality.shadows == ShadowChoice::Traced,
+        casts: quality.shadows != ShadowChoice::Off,
     }
 }
 

@@ -78,7 +78,7 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     args.quality.check()?;
     if args.quality.shadows != ShadowChoice::Off && !args.reference {
         return Err(Failure::Usage(
-            "--shadows traced is for --reference; grids are drawn without shadows".into(),
+            "--shadows works with --reference alone; grids are drawn without shadows".into(),
         ));
     }
     if args
