@@ -126,11 +126,13 @@ impl<'a> Grid<'a> {
         let sections = Sections::open(bytes)?;
         let mut grid = Self::header(bytes)?;
         let mut levels = 0usize;
+        let mut has_materials = false;
         for section in sections.iter() {
             let section = section?;
             match section.kind {
-                SECTION_MATERIALS if levels == 0 => {
-                    grid.read_materials(section.bytes, section.offset)?
+                SECTION_MATERIALS if levels == 0 && !has_materials => {
+                    grid.read_materials(section.bytes, section.offset)?;
+                    has_materials = true;
                 }
                 SECTION_LEVEL => {
                     let (done, rest) =
@@ -301,3 +303,6 @@ fn check_magic(bytes: &[u8]) -> Result<(), AssetError> {
         None => Err(AssetError::Truncated { length }),
     }
 }
+
+#[cfg(test)]
+mod tests;
