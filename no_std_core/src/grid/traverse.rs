@@ -18,6 +18,10 @@ use crate::splat::{Extent, Splat, draw};
 use crate::stats::Stats;
 use crate::target::Target;
 
+/// Half sides of rectangles saturate here, at 2^17 px: a place is at most 2^30
+/// and half a picture from zero, so that it and a half side add up.
+const HALF_LIMIT: i32 = 1 << 29;
+
 /// Everything that a frame's traversal reads.
 struct Frame<'a, const CELLS: usize, const LEVELS: usize> {
     grid: &'a Grid<'a>,
@@ -350,7 +354,8 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
         let nearest_inverse = reciprocal(nearest as u32);
         let (mut sum_x, mut sum_y) = (0i32, 0i32);
         for edge in half_edges {
-            // dw / w, Q2.30.
+            // dw / w, Q2.30; saturates at one, which only a leaf that reaches
+            // behind the eye exceeds: no rectangle bounds that one.
             let ratio = i64::from(inverse.times(edge.w, 30));
             let shear = |value: i32| ((i64::from(value) * ratio) >> 30) as i32;
             sum_x = sum_x.saturating_add((edge.x - shear(centre.x)).saturating_abs());
@@ -367,24 +372,24 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
             y,
             depth,
             extent: Extent {
-                half: [
-                    nearest_inverse.times(sum_x, scale) + 1,
-                    nearest_inverse.times(sum_y, scale) + 1,
-                ],
+                half: [sum_x, sum_y]
+                    .map(|sum| (nearest_inverse.times(sum, scale) + 1).min(HALF_LIMIT)),
                 rim_drop: (depth - self.projection.depth(rim).min(depth)).saturating_add(1),
             },
         }
     }
 
-    /// Whether a projected cell lies wholly beside the band.
+    /// Whether a projected cell lies wholly beside the band; a saturated half
+    /// side reaches anywhere.
     fn is_outside(&self, print: &Footprint, output: &Output<'_, '_>) -> bool {
         let band = output.target.band;
         let pixel = |bound: u16| i32::from(bound) << crate::numbers::SCREEN_BITS;
+        let is_beside = |at: i32, half: i32, low: u16, high: u16| {
+            half < HALF_LIMIT && (at + half < pixel(low) || at - half > pixel(high))
+        };
         let [half_x, half_y] = print.extent.half;
-        print.x + half_x < pixel(band.left)
-            || print.x - half_x > pixel(band.right)
-            || print.y + half_y < pixel(band.top)
-            || print.y - half_y > pixel(band.bottom)
+        is_beside(print.x, half_x, band.left, band.right)
+            || is_beside(print.y, half_y, band.top, band.bottom)
     }
 }
 
