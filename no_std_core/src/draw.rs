@@ -58,3 +58,6 @@ pub fn draw(
     let shader = Shader::new(light, grid.materials(), shades);
     traverse(grid, camera, quality, &shader, target)
 }
+
+#[cfg(test)]
+mod tests;

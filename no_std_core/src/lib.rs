@@ -82,4 +82,6 @@ mod shade;
 mod splat;
 pub mod stats;
 pub mod target;
+#[cfg(test)]
+mod testing;
 pub mod trig;

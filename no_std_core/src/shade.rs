@@ -20,12 +20,13 @@ struct Model<'a> {
 }
 
 impl Model<'_> {
-    /// Lambert's cosine, not negative, Q1.15.
+    /// Lambert's cosine, 0 to 1, Q1.15.
     fn cosine(&self, normal: [i32; 3]) -> i32 {
         let [x, y, z] = normal;
-        // Q2.14 x Q2.14: two unit vectors give at most 2^28.
+        // Q2.14 x Q2.14: two unit vectors give 2^28 and some rounding, a unit
+        // vector and any other less than 2^30.
         let dot = x * self.towards[0] + y * self.towards[1] + z * self.towards[2];
-        (dot >> (2 * COMPONENT_BITS - 15)).max(0)
+        (dot >> (2 * COMPONENT_BITS - 15)).clamp(0, 1 << 15)
     }
 
     fn colour(&self, attribute: u16) -> u16 {
@@ -35,7 +36,7 @@ impl Model<'_> {
             .get(usize::from(attribute >> 13))
             .copied()
             .unwrap_or([0; 3]);
-        // Q1.15, at most one.
+        // Q1.15, at most one; the product is below 2^16 x 2^15.
         let weight = (self.ambient + ((self.diffuse * cosine) >> 15)).clamp(0, 1 << 15) as u32;
         // 8 bits x 5 or 6 bits x Q1.15: below 2^30.
         let channel =
@@ -56,7 +57,8 @@ impl<'a> Shader<'a> {
     pub fn new(light: &Light, materials: &'a [Rgb], memory: &'a mut [u16]) -> Self {
         let model = Model {
             materials,
-            towards: light.towards.map(|c| (c.to_bits() + (1 << 15)) >> 16),
+            // Halves up, without the overflow of adding first.
+            towards: light.towards.map(|c| ((c.to_bits() >> 15) + 1) >> 1),
             ambient: (light.ambient.to_bits() >> 16) as i32,
             diffuse: (light.diffuse.to_bits() >> 16) as i32,
         };
@@ -81,3 +83,6 @@ impl<'a> Shader<'a> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

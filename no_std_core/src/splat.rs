@@ -80,3 +80,6 @@ pub(crate) fn draw(target: &mut Target<'_>, stats: &mut Stats, splat: &Splat, ex
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

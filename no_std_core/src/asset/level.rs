@@ -84,7 +84,8 @@ impl<'a> Level<'a> {
         for (group, &link) in self.links.iter().enumerate() {
             if u64::from(link) != cells {
                 return Err(AssetError::Link {
-                    depth: depth.wrapping_sub(1),
+                    // The root's children hang on a link without a cell.
+                    depth: depth.saturating_sub(1),
                     index: group as u32,
                 });
             }

@@ -126,11 +126,13 @@ impl<'a> Grid<'a> {
         let sections = Sections::open(bytes)?;
         let mut grid = Self::header(bytes)?;
         let mut levels = 0usize;
+        let mut has_materials = false;
         for section in sections.iter() {
             let section = section?;
             match section.kind {
-                SECTION_MATERIALS if levels == 0 => {
-                    grid.read_materials(section.bytes, section.offset)?
+                SECTION_MATERIALS if levels == 0 && !has_materials => {
+                    grid.read_materials(section.bytes, section.offset)?;
+                    has_materials = true;
                 }
                 SECTION_LEVEL => {
                     let (done, rest) =
@@ -196,6 +198,12 @@ impl<'a> Grid<'a> {
         let flags = field(14)?;
         if flags > 1 {
             return Err(AssetError::Field { offset: 14 });
+        }
+        for offset in [20, 56] {
+            if u32_at(bytes, offset) != Some(0) {
+                let offset = offset as u32;
+                return Err(AssetError::Field { offset });
+            }
         }
         let radius = u32_at(bytes, 16).unwrap_or(0);
         // Between a touching sphere and the cube's corner, rounding included.
@@ -301,3 +309,6 @@ fn check_magic(bytes: &[u8]) -> Result<(), AssetError> {
         None => Err(AssetError::Truncated { length }),
     }
 }
+
+#[cfg(test)]
+mod tests;

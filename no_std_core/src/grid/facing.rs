@@ -9,11 +9,11 @@
 use crate::asset::node::{APERTURE_COSINE, APERTURE_SINE, Flags};
 use crate::camera::Camera;
 use crate::normal::{COMPONENT_BITS, OPPOSITE, decode};
-use crate::numbers::bit_length;
+use crate::numbers::{bit_length, shift_round};
 
 /// The scale of eye space and the root's place in it.
 pub(crate) struct EyeSpace {
-    /// Half side of the cube.
+    /// Half side of the cube; zero for eyes so far away that it is below one.
     pub unit: i32,
     /// The root's centre relative to the eye.
     pub centre: [i32; 3],
@@ -25,13 +25,10 @@ impl EyeSpace {
         let farthest = eye.iter().map(|c| c.unsigned_abs()).max().unwrap_or(0);
         // |eye| + 1 half side and rounding stay below 2^bits half sides.
         let bits = bit_length(u128::from(farthest) + (3 << 31)) - 32;
-        let unit_bits = (15 - bits).clamp(0, 14);
-        let centre = eye.map(|c| {
-            let scaled = -(i128::from(c) << unit_bits) >> 32;
-            scaled.clamp(-(1 << 15), 1 << 15) as i32
-        });
+        let unit_bits = (15 - bits).min(14);
+        let centre = eye.map(|c| shift_round(-i128::from(c), 32 - unit_bits) as i32);
         Self {
-            unit: 1 << unit_bits,
+            unit: if unit_bits < 0 { 0 } else { 1 << unit_bits },
             centre,
         }
     }
@@ -85,8 +82,8 @@ pub(crate) fn cone(flags: Flags, code: u16, view: [i32; 3], radius: i32) -> Faci
     }
 }
 
-/// Upper bound of a view vector's length, within 13%: the longest component
-/// and half of the others.
+/// Upper bound of a view vector's length, at most 23% too long: the longest
+/// component and half of the others.
 #[inline(always)]
 fn length(view: [i32; 3]) -> i32 {
     let [x, y, z] = view.map(i32::abs);
@@ -113,3 +110,6 @@ pub(crate) fn turned(attribute: u16, view: [i32; 3]) -> u16 {
         attribute
     }
 }
+
+#[cfg(test)]
+mod tests;

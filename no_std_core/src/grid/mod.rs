@@ -6,6 +6,8 @@
 //! face away are skipped with their subtrees.
 
 mod facing;
+mod footprint;
+mod leaves;
 mod tables;
 mod traverse;
 

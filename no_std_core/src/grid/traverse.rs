@@ -4,55 +4,46 @@
 //! Source: Duguet and Drettakis 2003, 5.1 (centres by additions) and 5.2
 //! (multi-level stop, bounds of a projected cell).
 
-use super::facing::{EyeSpace, Facing, along, cone, horizon, turned};
+use super::facing::{EyeSpace, Facing, cone, turned};
+use super::footprint::{Place, extent};
 use super::tables::{LevelTable, Point, Tables};
 use crate::asset::Grid;
 use crate::asset::node::{Flags, halves, occupied};
 use crate::camera::Camera;
 use crate::draw::Quality;
 use crate::projection::Projection;
-use crate::reciprocal::{Reciprocal, reciprocal};
+use crate::reciprocal::reciprocal;
 use crate::shade::Shader;
-use crate::splat::{Extent, Splat, draw};
 use crate::stats::Stats;
 use crate::target::Target;
 
 /// Everything that a frame's traversal reads.
-struct Frame<'a, const CELLS: usize, const LEVELS: usize> {
-    grid: &'a Grid<'a>,
-    projection: &'a Projection,
-    shader: &'a Shader<'a>,
-    tables: Tables<CELLS, LEVELS>,
+pub(super) struct Frame<'a, const CELLS: usize, const LEVELS: usize> {
+    pub grid: &'a Grid<'a>,
+    pub projection: &'a Projection,
+    pub shader: &'a Shader<'a>,
+    pub tables: Tables<CELLS, LEVELS>,
     /// Longest side of a cell's rectangle that is one splat, Q20.12 pixels.
-    splat_side: i32,
+    pub splat_side: i32,
 }
 
 /// What a frame's traversal writes.
-struct Output<'t, 'b> {
-    target: &'t mut Target<'b>,
-    stats: Stats,
+pub(super) struct Output<'t, 'b> {
+    pub target: &'t mut Target<'b>,
+    pub stats: Stats,
 }
 
 /// A cell on the way down.
 #[derive(Clone, Copy)]
-struct Cell {
-    depth: u8,
+pub(super) struct Cell {
+    pub depth: u8,
     /// Index in its level.
-    index: usize,
+    pub index: usize,
     /// Index of its first child in the next level.
-    first_child: usize,
-    centre: Point,
+    pub first_child: usize,
+    pub centre: Point,
     /// From the eye to the centre, eye space.
-    view: [i32; 3],
-}
-
-/// A cell's projection.
-struct Footprint {
-    /// Centre, Q20.12 pixels from the top left corner.
-    x: i32,
-    y: i32,
-    depth: u16,
-    extent: Extent,
+    pub view: [i32; 3],
 }
 
 /// Draws a grid; the target is already clear.
@@ -117,7 +108,7 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
                 let record = next.nodes.get(..halves(RHO)).unwrap_or(&[]);
                 self.node::<RHO>(root, record, attribute, output);
             }
-            None => self.leaf(root, self.tables.root.half_edges, attribute, None, output),
+            None => self.root_leaf(root, attribute, output),
         }
     }
 
@@ -142,24 +133,23 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
             return;
         }
         let nearest = cell.centre.w - half_w;
-        let mut footprint = None;
         if nearest >= self.projection.near {
-            let print = self.footprint(cell.centre, &half_edges, nearest);
-            if self.is_outside(&print, output) {
+            let inverse = reciprocal(cell.centre.w as u32);
+            let place = Place::of(self.projection, cell.centre, inverse);
+            let extent = extent(self.projection, cell.centre, inverse, &half_edges, nearest);
+            if place.is_outside(&extent, output.target.band) {
                 output.stats.nodes_outside += 1;
                 return;
             }
-            if 2 * print.extent.half[0].max(print.extent.half[1]) <= self.splat_side {
-                let attribute = turned(attribute, cell.view);
-                self.splat(&print, print.depth, (print.x, print.y), attribute, output);
+            if 2 * extent.half[0].max(extent.half[1]) <= self.splat_side {
+                self.splat(place, &extent, turned(attribute, cell.view), output);
                 return;
             }
-            footprint = Some(print);
         }
         let table = self.tables.below(cell.depth);
         let leaves = cell.depth + 1 == self.grid.depth();
         if leaves {
-            self.leaves(cell, record, flags, table, footprint, output);
+            self.leaves(cell, record, flags, table, output);
         } else {
             self.children::<RHO>(cell, record, table, output);
         }
@@ -217,110 +207,9 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
         }
     }
 
-    /// Draws the children of a cell, all of which are leaves.
-    fn leaves(
-        &self,
-        cell: &Cell,
-        record: &[u16],
-        flags: Flags,
-        table: &LevelTable<CELLS>,
-        footprint: Option<Footprint>,
-        output: &mut Output<'_, '_>,
-    ) {
-        let below = usize::from(cell.depth) + 1;
-        let Some(level) = self.grid.levels().get(below) else {
-            return;
-        };
-        let mut attributes = level.attributes.iter().skip(cell.first_child);
-        // The block's nearest corner bounds every leaf's size.
-        let extent = footprint.map(|_| {
-            let nearest = cell.centre.w - self.extents(cell.depth).1;
-            self.footprint(cell.centre, &table.half_edges, nearest)
-                .extent
-        });
-        let limit = horizon(cell.view, self.extents(cell.depth).2);
-        for (&half, displacements) in record.iter().zip(table.displacements.chunks(16)) {
-            let mut bits = half;
-            for displacement in displacements {
-                if bits & 1 != 0 {
-                    let Some(&attribute) = attributes.next() else {
-                        return;
-                    };
-                    let attribute = match along(attribute, cell.view) > limit {
-                        false => attribute,
-                        true if flags.two_sided => turned(attribute, cell.view),
-                        true => {
-                            bits >>= 1;
-                            continue;
-                        }
-                    };
-                    let leaf = Cell {
-                        centre: cell.centre.plus(*displacement),
-                        ..*cell
-                    };
-                    self.leaf(&leaf, table.half_edges, attribute, extent, output);
-                }
-                bits >>= 1;
-            }
-        }
-    }
-
-    /// Draws one leaf, of a given extent or its own.
-    fn leaf(
-        &self,
-        leaf: &Cell,
-        half_edges: [Point; 3],
-        attribute: u16,
-        extent: Option<Extent>,
-        output: &mut Output<'_, '_>,
-    ) {
-        let w = leaf.centre.w;
-        if w < self.projection.near {
-            return;
-        }
-        let inverse = reciprocal(w as u32);
-        let (x, y) = self.place(leaf.centre, inverse);
-        let depth = self.projection.depth(inverse);
-        let print = match extent {
-            Some(extent) => Footprint {
-                x,
-                y,
-                depth,
-                extent,
-            },
-            None => {
-                let half_w: i32 = half_edges.iter().map(|edge| edge.w.abs() + 1).sum();
-                self.footprint(
-                    leaf.centre,
-                    &half_edges,
-                    (w - half_w).max(self.projection.near),
-                )
-            }
-        };
-        self.splat(&print, depth, (x, y), attribute, output);
-    }
-
-    fn splat(
-        &self,
-        print: &Footprint,
-        depth: u16,
-        (x, y): (i32, i32),
-        attribute: u16,
-        output: &mut Output<'_, '_>,
-    ) {
-        output.stats.samples_drawn += 1;
-        let splat = Splat {
-            x,
-            y,
-            depth,
-            colour: self.shader.colour(attribute),
-        };
-        draw(output.target, &mut output.stats, &splat, &print.extent);
-    }
-
     /// Extents of cells of a depth: half edges, half extent in w, radius.
     #[inline(always)]
-    fn extents(&self, depth: u8) -> ([Point; 3], i32, i32) {
+    pub(super) fn extents(&self, depth: u8) -> ([Point; 3], i32, i32) {
         match depth.checked_sub(1) {
             None => (
                 self.tables.root.half_edges,
@@ -332,61 +221,5 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
                 (table.half_edges, table.half_w, table.eye_radius)
             }
         }
-    }
-
-    /// Pixel position of a point with its reciprocal w.
-    #[inline(always)]
-    fn place(&self, point: Point, inverse: Reciprocal) -> (i32, i32) {
-        let scale = self.projection.screen_scale + crate::numbers::SCREEN_BITS;
-        let [middle_x, middle_y] = self.projection.middle;
-        (
-            inverse.times(point.x, scale) + middle_x.to_bits(),
-            inverse.times(point.y, scale) + middle_y.to_bits(),
-        )
-    }
-
-    /// Projects a cell. For a corner c + d: (X + dX) / (w + dw) - X / w =
-    /// (dX - X / w dw) / (w + dw), so half the rectangle's sides are at most
-    /// the sum over the half edges of |dX - X / w dw|, over the nearest w.
-    fn footprint(&self, centre: Point, half_edges: &[Point; 3], nearest: i32) -> Footprint {
-        let inverse = reciprocal(centre.w as u32);
-        let nearest_inverse = reciprocal(nearest as u32);
-        let (mut sum_x, mut sum_y) = (0i32, 0i32);
-        for edge in half_edges {
-            // dw / w, Q2.30.
-            let ratio = i64::from(inverse.times(edge.w, 30));
-            let shear = |value: i32| ((i64::from(value) * ratio) >> 30) as i32;
-            sum_x = sum_x.saturating_add((edge.x - shear(centre.x)).saturating_abs());
-            sum_y = sum_y.saturating_add((edge.y - shear(centre.y)).saturating_abs());
-        }
-        let scale = self.projection.screen_scale + crate::numbers::SCREEN_BITS;
-        let (x, y) = self.place(centre, inverse);
-        let depth = self.projection.depth(inverse);
-        // The rim lies a cell's diagonal deeper, at least one step.
-        let diagonal: i32 = half_edges.iter().map(|edge| edge.w.abs()).sum();
-        let rim = reciprocal((centre.w.saturating_add(2 * diagonal)) as u32);
-        Footprint {
-            x,
-            y,
-            depth,
-            extent: Extent {
-                half: [
-                    nearest_inverse.times(sum_x, scale) + 1,
-                    nearest_inverse.times(sum_y, scale) + 1,
-                ],
-                rim_drop: (depth - self.projection.depth(rim).min(depth)).saturating_add(1),
-            },
-        }
-    }
-
-    /// Whether a projected cell lies wholly beside the band.
-    fn is_outside(&self, print: &Footprint, output: &Output<'_, '_>) -> bool {
-        let band = output.target.band;
-        let pixel = |bound: u16| i32::from(bound) << crate::numbers::SCREEN_BITS;
-        let [half_x, half_y] = print.extent.half;
-        print.x + half_x < pixel(band.left)
-            || print.x - half_x > pixel(band.right)
-            || print.y + half_y < pixel(band.top)
-            || print.y - half_y > pixel(band.bottom)
     }
 }

@@ -1,0 +1,106 @@
+use super::*;
+use crate::asset::node::{APERTURE_COSINE, APERTURE_SINE};
+use crate::normal::CODES;
+use crate::testing::{Rng, direction, dot};
+
+fn axis(code: u16) -> [f64; 3] {
+    let axis = decode(code).map(f64::from);
+    let length = dot(axis, axis).sqrt();
+    axis.map(|c| c / length)
+}
+
+fn view(rng: &mut Rng) -> [i32; 3] {
+    let length = 32768.0 * rng.f64();
+    direction(rng).map(|c| (c * length) as i32)
+}
+
+/// The least n . (v + d) over all normals n within an angle of the axis and
+/// all |d| <= radius.
+fn least(code: u16, angle: f64, view: [f64; 3], radius: f64) -> f64 {
+    let length = dot(view, view).sqrt();
+    let off_axis = (dot(axis(code), view) / length).clamp(-1.0, 1.0).acos();
+    length * (off_axis + angle).min(core::f64::consts::PI).cos() - radius
+}
+
+fn angle(aperture: u8) -> f64 {
+    (6.0 * (f64::from(aperture) + 1.0)).to_radians()
+}
+
+#[test]
+fn aperture_tables_are_rounded_sines_and_cosines() {
+    for aperture in 0..15u8 {
+        let exact = angle(aperture);
+        let sine = f64::from(APERTURE_SINE[usize::from(aperture)]) / 32768.0;
+        let cosine = f64::from(APERTURE_COSINE[usize::from(aperture)]) / 32768.0;
+        // Up and down: a cone never closes; 90 degrees are exact.
+        let sine_off = (sine - exact.sin()) * 32768.0;
+        let cosine_off = (exact.cos() - cosine) * 32768.0;
+        assert!((-1e-9..=1.0 + 1e-9).contains(&sine_off), "sine {aperture}");
+        assert!(
+            (-1e-9..=1.0 + 1e-9).contains(&cosine_off),
+            "cosine {aperture}"
+        );
+    }
+}
+
+#[test]
+fn along_is_within_its_bound() {
+    let mut rng = Rng::with_seed(11);
+    for _ in 0..1_000_000 {
+        let (code, view) = (rng.u16(..CODES as u16), view(&mut rng));
+        let exact = dot(axis(code), view.map(f64::from));
+        let error = f64::from(along(code, view)) - exact;
+        assert!(error.abs() < 4.0, "code {code}, view {view:?}: {error}");
+    }
+}
+
+#[test]
+fn cones_turn_away_only_where_every_normal_does() {
+    let mut rng = Rng::with_seed(12);
+    let (mut away, mut clear, mut found) = (0, 0, 0);
+    for _ in 0..1_000_000 {
+        let flags = Flags {
+            aperture: rng.u8(..15),
+            two_sided: false,
+        };
+        let (code, view) = (rng.u16(..CODES as u16), view(&mut rng));
+        let radius = (32768.0 * rng.f64().powi(4)) as i32;
+        let float_view = view.map(f64::from);
+        let exact = least(code, angle(flags.aperture), float_view, f64::from(radius));
+        let length = dot(float_view, float_view).sqrt();
+        let got = cone(flags, code, view, radius);
+        if got == Facing::Away {
+            away += 1;
+            assert!(exact > 0.0, "{flags:?} {code} {view:?} {radius}: {exact}");
+        }
+        if exact > 0.02 * length {
+            clear += 1;
+            found += u32::from(got == Facing::Away);
+        }
+    }
+    let share = f64::from(found) / f64::from(clear);
+    std::println!("cones: {away} away, {share:.4} of {clear} clear ones found");
+    assert!(clear > 50_000 && share > 0.9, "{share} of {clear}");
+}
+
+#[test]
+fn open_cones_never_turn_away() {
+    let code = crate::normal::encode([0, 0, 1 << 20]);
+    let view = [0, 0, 20000];
+    for aperture in 0..16 {
+        for two_sided in [false, true] {
+            let flags = Flags {
+                aperture,
+                two_sided,
+            };
+            let want = if aperture >= 14 {
+                Facing::Maybe
+            } else {
+                Facing::Away
+            };
+            assert_eq!(cone(flags, code, view, 0), want, "{flags:?}");
+            let ahead = cone(flags, code, view.map(|c| -c), 0);
+            assert_eq!(ahead, Facing::Maybe, "{flags:?}");
+        }
+    }
+}

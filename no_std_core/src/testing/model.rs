@@ -1,0 +1,269 @@
+//! Small grids, and the files that hold them.
+
+use std::vec::Vec;
+
+use super::Rng;
+use crate::asset::node::{APERTURE_ALL, Flags, halves};
+use crate::asset::{
+    HEADER_BYTES, HEADER_CRC_OFFSET, KIND_GRID, MAGIC, Rgb, SECTION_BYTES, SECTION_LEVEL,
+    SECTION_MATERIALS, VERSION, checksum,
+};
+
+/// One cell of a model.
+#[derive(Clone, Debug)]
+pub(crate) struct Cell {
+    /// Twice the cell's coordinates, plus one, minus the cells per axis: its
+    /// centre in units of its half side.
+    pub place: [i64; 3],
+    /// Its parent's index in the level above.
+    pub parent: usize,
+    pub attribute: u16,
+    /// Occupied subcells; zero on the last level.
+    pub mask: u128,
+    pub flags: Flags,
+}
+
+/// A grid before it becomes bytes: all cells of every depth, in file order.
+#[derive(Clone, Debug)]
+pub(crate) struct Model {
+    pub rho: u8,
+    pub materials: Vec<Rgb>,
+    pub levels: Vec<Vec<Cell>>,
+}
+
+impl Model {
+    /// Grows a grid: `occupy` says for each cell of each depth which subcells
+    /// it has (limited to rho^3, never none), `dress` sets attribute and
+    /// flags.
+    pub fn grow(
+        rho: u8,
+        depth: u8,
+        mut occupy: impl FnMut(usize, &Cell) -> u128,
+        mut dress: impl FnMut(&mut Cell),
+    ) -> Self {
+        let subcells = u32::from(rho).pow(3);
+        let all = u128::MAX >> (128 - subcells);
+        let mut root = Cell {
+            place: [0; 3],
+            parent: 0,
+            attribute: 0,
+            mask: 0,
+            flags: Flags {
+                aperture: APERTURE_ALL,
+                two_sided: true,
+            },
+        };
+        dress(&mut root);
+        let mut levels = std::vec![std::vec![root]];
+        for above in 0..usize::from(depth) {
+            let mut next = Vec::new();
+            for (parent, cell) in levels[above].iter_mut().enumerate() {
+                let mask = occupy(above, cell) & all;
+                cell.mask = if mask == 0 { 1 } else { mask };
+                for bit in (0..subcells).filter(|bit| cell.mask >> bit & 1 != 0) {
+                    let mut child = Cell {
+                        place: child_place(rho, cell.place, bit),
+                        parent,
+                        mask: 0,
+                        ..cell.clone()
+                    };
+                    dress(&mut child);
+                    next.push(child);
+                }
+            }
+            levels.push(next);
+        }
+        Self {
+            rho,
+            materials: std::vec![[255; 3]],
+            levels,
+        }
+    }
+
+    /// Random cells with random normals, all two-sided with open cones;
+    /// about `leaves` leaves.
+    pub fn random(rng: &mut Rng, rho: u8, depth: u8, leaves: f64) -> Self {
+        let children = leaves.powf(1.0 / f64::from(depth.max(1)));
+        let subcells = u32::from(rho).pow(3);
+        let share = (children / f64::from(subcells)).min(1.0);
+        let mut attributes = Rng::with_seed(rng.u64(..));
+        Self::grow(
+            rho,
+            depth,
+            |_, _| {
+                let picked = (0..subcells).filter(|_| rng.f64() < share);
+                let mask = picked.fold(0, |mask, bit| mask | 1u128 << bit);
+                match mask {
+                    0 => 1u128 << rng.u32(..subcells),
+                    _ => mask,
+                }
+            },
+            |cell| cell.attribute = attributes.u16(..1 << 13),
+        )
+    }
+
+    /// Gives every cell one of eight materials.
+    pub fn paint(&mut self, rng: &mut Rng) {
+        self.materials = (0..8).map(|i| [i * 36, 255 - i * 36, i * 20]).collect();
+        for cell in self.levels.iter_mut().flatten() {
+            cell.attribute = (cell.attribute & 0x1fff) | rng.u16(..8) << 13;
+        }
+    }
+
+    /// Deepest level.
+    pub fn depth(&self) -> u8 {
+        (self.levels.len() - 1) as u8
+    }
+
+    /// Cells across the cube at a depth.
+    pub fn cells_per_axis(&self, depth: usize) -> i64 {
+        i64::from(self.rho).pow(depth as u32)
+    }
+
+    /// A cell's centre in half sides of the cube.
+    pub fn centre(&self, depth: usize, cell: &Cell) -> [f64; 3] {
+        let across = self.cells_per_axis(depth) as f64;
+        cell.place.map(|place| place as f64 / across)
+    }
+
+    fn record(&self, cell: &Cell) -> Vec<u16> {
+        let count = halves(self.rho);
+        let mut record: Vec<u16> = (0..count.min(8))
+            .map(|half| (cell.mask >> (16 * half)) as u16)
+            .collect();
+        record.resize(count, 0);
+        record[count - 1] |= cell.flags.to_last(self.rho);
+        record
+    }
+
+    fn level(&self, depth: usize) -> Vec<u8> {
+        let cells = &self.levels[depth];
+        let mut bytes = Vec::new();
+        bytes.extend((cells.len() as u32).to_le_bytes());
+        if depth == 1 {
+            bytes.extend(0u32.to_le_bytes());
+        }
+        if depth >= 2 {
+            for grandparent in 0..self.levels[depth - 2].len() {
+                let parents = &self.levels[depth - 1];
+                let first = cells.partition_point(|cell| parents[cell.parent].parent < grandparent);
+                bytes.extend((first as u32).to_le_bytes());
+            }
+        }
+        if depth >= 1 {
+            let parents = self.levels[depth - 1].iter();
+            extend_padded(&mut bytes, parents.flat_map(|cell| self.record(cell)));
+        }
+        extend_padded(&mut bytes, cells.iter().map(|cell| cell.attribute));
+        bytes
+    }
+
+    /// The model as a file.
+    pub fn file(&self) -> File {
+        let mut header = [0; HEADER_BYTES];
+        header[..4].copy_from_slice(&MAGIC);
+        header[4..6].copy_from_slice(&VERSION.to_le_bytes());
+        header[8] = KIND_GRID;
+        header[9] = self.rho;
+        header[10] = self.depth();
+        header[11] = 16;
+        header[13] = 1;
+        header[16..20].copy_from_slice(&(1u32 << 28).to_le_bytes());
+        let mut sections = Vec::new();
+        if self.materials != [[255; 3]] {
+            let mut bytes = Vec::from((self.materials.len() as u32).to_le_bytes());
+            for &[red, green, blue] in &self.materials {
+                bytes.extend([red, green, blue, 0]);
+            }
+            sections.push((SECTION_MATERIALS, bytes));
+        }
+        sections.extend((0..self.levels.len()).map(|depth| (SECTION_LEVEL, self.level(depth))));
+        File { header, sections }
+    }
+}
+
+/// The place of a cell's subcell.
+pub(crate) fn child_place(rho: u8, place: [i64; 3], bit: u32) -> [i64; 3] {
+    let (rho, bit) = (i64::from(rho), i64::from(bit));
+    let subcell = [bit % rho, bit / rho % rho, bit / rho / rho];
+    [0, 1, 2].map(|axis| place[axis] * rho + 2 * subcell[axis] - rho + 1)
+}
+
+fn extend_padded(bytes: &mut Vec<u8>, words: impl Iterator<Item = u16>) {
+    bytes.extend(words.flat_map(u16::to_le_bytes));
+    bytes.resize(bytes.len().next_multiple_of(4), 0);
+}
+
+/// A file before its checksums: parts may be damaged first.
+#[derive(Clone, Debug)]
+pub(crate) struct File {
+    pub header: [u8; HEADER_BYTES],
+    pub sections: Vec<(u32, Vec<u8>)>,
+}
+
+impl File {
+    /// The file's bytes with offsets, lengths and checksums filled in.
+    pub fn bytes(&self) -> Vec<u8> {
+        let count = self.sections.len();
+        let header_bytes = HEADER_BYTES + SECTION_BYTES * count;
+        let mut bytes = Vec::from(self.header);
+        bytes[6..8].copy_from_slice(&(header_bytes as u16).to_le_bytes());
+        bytes[15] = count as u8;
+        let mut offset = header_bytes;
+        for (kind, section) in &self.sections {
+            for word in [
+                *kind,
+                offset as u32,
+                section.len() as u32,
+                checksum(&[section]),
+            ] {
+                bytes.extend(word.to_le_bytes());
+            }
+            offset += section.len();
+        }
+        seal(&mut bytes);
+        bytes.extend(self.sections.iter().flat_map(|(_, section)| section));
+        bytes
+    }
+
+    /// Where each section ends.
+    pub fn ends(&self) -> Vec<usize> {
+        let start = HEADER_BYTES + SECTION_BYTES * self.sections.len();
+        let ends = self.sections.iter().scan(start, |end, (_, section)| {
+            *end += section.len();
+            Some(*end)
+        });
+        ends.collect()
+    }
+}
+
+/// Writes the header's checksum over whatever the header holds.
+pub(crate) fn seal(bytes: &mut [u8]) {
+    let header_bytes = usize::from(u16::from_le_bytes([bytes[6], bytes[7]])).min(bytes.len());
+    let table = &bytes[HEADER_CRC_OFFSET + 4..header_bytes];
+    let sum = checksum(&[&bytes[..HEADER_CRC_OFFSET], table]);
+    bytes[HEADER_CRC_OFFSET..HEADER_CRC_OFFSET + 4].copy_from_slice(&sum.to_le_bytes());
+}
+
+/// A copy of bytes that starts at a multiple of four.
+pub(crate) struct Aligned {
+    words: Vec<u32>,
+    length: usize,
+}
+
+pub(crate) fn aligned(bytes: &[u8]) -> Aligned {
+    let mut words = std::vec![0; bytes.len().div_ceil(4) + 1];
+    bytemuck::cast_slice_mut(&mut words)[..bytes.len()].copy_from_slice(bytes);
+    Aligned {
+        words,
+        length: bytes.len(),
+    }
+}
+
+impl core::ops::Deref for Aligned {
+    type Target = [u8];
+
+    fn deref(&self) -> &[u8] {
+        &bytemuck::cast_slice(&self.words)[..self.length]
+    }
+}
