@@ -16,7 +16,7 @@ use core::hint::black_box;
 
 use rhogrid_core::asset::Grid;
 use rhogrid_core::camera::{Camera, Orbit};
-use rhogrid_core::draw::{Light, Quality, draw};
+use rhogrid_core::draw::{Light, Quality, draw, shades_len};
 use rhogrid_core::numbers::{FocalPx, Length, SplatPx, Turns, Unit, Weight};
 use rhogrid_core::target::{Rect, Target, frame_hash};
 use rhogrid_frame::Frame;
@@ -92,7 +92,9 @@ fn draw_unknown(target: Option<Target<'_>>) {
     let quality = Quality {
         splat: black_box(SplatPx::ZERO),
     };
-    black_box(grid.shades_len());
+    black_box(grid.radius());
+    black_box(shades_len(grid.materials().len()));
+    black_box((grid.levels().len(), grid.rho(), grid.depth()));
     black_box(draw(
         &grid,
         &unknown_camera(),

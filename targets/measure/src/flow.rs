@@ -5,7 +5,7 @@ use core::hint::black_box;
 
 use rhogrid_core::asset::{AssetError, Grid};
 use rhogrid_core::camera::Camera;
-use rhogrid_core::draw::draw;
+use rhogrid_core::draw::{draw, shades_len};
 use rhogrid_core::stats::Stats;
 use rhogrid_core::target::{Target, TargetError, frame_hash};
 use rhogrid_frame::{Frame, FrameError, Settings};
@@ -83,7 +83,7 @@ fn measure_all<B: Board>(board: &mut B, buffers: &'static mut Buffers) -> Result
     let pixels = usize::from(settings.width) * usize::from(settings.height);
     let colour = colour.get_mut(..pixels).ok_or(TargetError::ColourLength)?;
     let depth = depth.get_mut(..pixels).ok_or(TargetError::DepthLength)?;
-    let shades_len = grid.shades_len();
+    let shades_len = shades_len(grid.materials().len());
     let shades = shades
         .get_mut(..shades_len)
         .ok_or(Failure::Shades(shades_len))?;

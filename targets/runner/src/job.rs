@@ -3,10 +3,10 @@
 use std::io::{self, Write};
 use std::path::PathBuf;
 
+use rhogrid::asset_file::AssetFile;
 use rhogrid::error::Error;
 use rhogrid_core::draw::{Light, Quality};
 
-use crate::asset::{self, AlignedBytes};
 use crate::frame_file::FrameFile;
 use crate::host::{self, HostFrame};
 use crate::machine::Machine;
@@ -15,7 +15,7 @@ use crate::qemu::{self, Guest};
 use crate::qmp::Qmp;
 use crate::screen::{self, Screen};
 use crate::session::{Ending, Event, Session, ViewResult};
-use crate::views::{self, View};
+use crate::views::View;
 use crate::{failure, firmware, workspace};
 
 /// What to draw, where, and how.
@@ -41,9 +41,13 @@ pub struct Job {
 /// When something is missing or broken, or a picture is not the host's.
 pub fn run(job: &Job) -> Result<(), Error> {
     let machine = job.machine;
-    let asset = AlignedBytes::read(&job.file)?;
-    let radius = views::radius(&asset::open(&job.file, &asset)?);
-    let frame_file = FrameFile::new(asset.bytes(), radius, &job.views, job.light, job.quality)?;
+    let asset = AssetFile::load(&job.file)?;
+    let cameras = |view: &View| rhogrid_frame::View {
+        warm_up: view.warm_up(&asset),
+        measured: view.camera(&asset),
+    };
+    let cameras: Vec<_> = job.views.iter().map(cameras).collect();
+    let frame_file = FrameFile::new(asset.bytes(), &cameras, job.light, job.quality)?;
     frame_file.check_fits(machine)?;
     qemu::check(machine)?;
     let host_frames = host::render(&frame_file)?;
@@ -61,7 +65,10 @@ pub fn run(job: &Job) -> Result<(), Error> {
     let screen_result = if machine.has_screen {
         let dump = folder.path().join("screen.ppm");
         Qmp::connect(&socket)?.screendump(&dump)?;
-        check_screen(machine, ending, &Screen::read(&dump)?, host_frames.last())
+        let settings = frame_file.open()?.settings();
+        let size = [settings.width, settings.height].map(u32::from);
+        let screen = Screen::read(&dump)?;
+        check_screen(machine, ending, size, &screen, host_frames.last())
     } else {
         Ok(())
     };
@@ -138,13 +145,13 @@ fn print(measurement: &Measurement, json: bool) -> Result<(), Error> {
 fn check_screen(
     machine: &Machine,
     ending: Ending,
+    [width, height]: [u32; 2],
     screen: &Screen,
     last: Option<&HostFrame>,
 ) -> Result<(), Error> {
     let Some(last) = last else {
         return Ok(());
     };
-    let (width, height) = (u32::from(views::WIDTH), u32::from(views::HEIGHT));
     if ending != (Ending::Shown { width, height }) || screen.size() != (width, height) {
         return Err(failure(
             format!(
@@ -156,7 +163,7 @@ fn check_screen(
         ));
     }
     let words = screen.rgb565();
-    let Err(difference) = screen::compare(&words, &last.colour, usize::from(views::WIDTH)) else {
+    let Err(difference) = screen::compare(&words, &last.colour, width as usize) else {
         return Ok(());
     };
     let folder = workspace().join("target/screens");

@@ -9,8 +9,8 @@
 
 #![forbid(unsafe_code)]
 
+pub mod aligned;
 pub mod armv4;
-pub mod asset;
 pub mod clock;
 pub mod firmware;
 pub mod frame_file;

@@ -6,8 +6,9 @@ use std::process::ExitCode;
 
 use clap::error::ErrorKind;
 use clap::{CommandFactory, Parser};
-use rhogrid_core::draw::{Light, Quality};
-use rhogrid_targets::frame_file::{light, quality};
+use rhogrid::cli::{Failure, QualityArgs, core_light, float_light};
+use rhogrid_core::draw::Quality;
+use rhogrid_core::numbers::SplatPx;
 use rhogrid_targets::job::{Job, run};
 use rhogrid_targets::machine::{self, Machine};
 use rhogrid_targets::views::{self, View};
@@ -27,12 +28,8 @@ struct Arguments {
     /// radii; may be repeated [default: full, far and close]
     #[arg(long = "view", value_name = "VIEW", value_parser = parse_views, allow_hyphen_values = true)]
     views: Vec<Vec<View>>,
-    /// Longer side in pixels below which a cell is one splat
-    #[arg(long, value_name = "PX", default_value = "1.0", value_parser = parse_splat)]
-    splat: Quality,
-    /// Direction towards the light
-    #[arg(long, value_name = "X,Y,Z", default_value = "1,2,1.5", value_parser = parse_light, allow_hyphen_values = true)]
-    light: Light,
+    #[command(flatten)]
+    quality: QualityArgs,
     /// One JSON object a line
     #[arg(long)]
     json: bool,
@@ -42,48 +39,54 @@ fn parse_views(text: &str) -> Result<Vec<View>, String> {
     views::parse(text)
 }
 
-fn parse_splat(text: &str) -> Result<Quality, String> {
-    quality(text.parse().unwrap_or(f64::NAN))
-}
-
-fn parse_light(text: &str) -> Result<Light, String> {
-    let numbers: Vec<f64> = text
-        .split(',')
-        .map(|part| part.trim().parse().unwrap_or(f64::NAN))
-        .collect();
-    light(numbers.try_into().unwrap_or([f64::NAN; 3]))
-}
-
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
-    let file = arguments.file;
-    if file
-        .extension()
-        .is_some_and(|extension| extension == "toml")
-    {
-        let message = "scenes are not supported yet; name an asset (FILE.rho)";
+    if let Err(what) = arguments.check() {
         Arguments::command()
-            .error(ErrorKind::InvalidValue, message)
+            .error(ErrorKind::InvalidValue, what)
             .exit();
     }
-    let views = if arguments.views.is_empty() {
-        views::standard()
-    } else {
-        arguments.views.concat()
-    };
-    let job = Job {
-        machine: arguments.machine,
-        file,
-        views,
-        light: arguments.light,
-        quality: arguments.splat,
-        json: arguments.json,
-    };
-    match run(&job) {
+    match run(&arguments.job()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("error: {error}");
             ExitCode::FAILURE
+        }
+    }
+}
+
+impl Arguments {
+    /// Checks what clap cannot.
+    fn check(&self) -> Result<(), String> {
+        let extension = self.file.extension();
+        if extension.is_some_and(|extension| extension == "toml") {
+            return Err("scenes are not supported yet; name an asset (FILE.rho)".to_owned());
+        }
+        if float_light(&self.quality).casts {
+            return Err("shadows are not supported yet; leave --shadows off".to_owned());
+        }
+        match self.quality.check() {
+            Ok(()) => Ok(()),
+            Err(Failure::Usage(what)) => Err(what),
+            Err(Failure::Failed(error)) => Err(error.to_string()),
+        }
+    }
+
+    fn job(self) -> Job {
+        let views = if self.views.is_empty() {
+            views::standard()
+        } else {
+            self.views.concat()
+        };
+        Job {
+            machine: self.machine,
+            file: self.file,
+            views,
+            light: core_light(&self.quality),
+            quality: Quality {
+                splat: SplatPx::saturating_from_num(self.quality.splat),
+            },
+            json: self.json,
         }
     }
 }

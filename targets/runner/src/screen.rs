@@ -6,8 +6,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use image::{ImageFormat, RgbImage};
 use rhogrid::error::{Error, Place};
+use rhogrid::picture::Picture;
 
 /// A picture of 8-bit red, green and blue.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -53,24 +53,6 @@ impl Screen {
         })
     }
 
-    /// A picture of RGB565 words, widened by bit replication. `words` holds
-    /// `width * height` of them.
-    pub fn from_rgb565(width: u32, height: u32, words: &[u16]) -> Self {
-        let wide = |word: &u16| {
-            let [red, green, blue] = [word >> 11, word >> 5 & 63, word & 31];
-            [
-                (red << 3 | red >> 2) as u8,
-                (green << 2 | green >> 4) as u8,
-                (blue << 3 | blue >> 2) as u8,
-            ]
-        };
-        Self {
-            width,
-            height,
-            rgb: words.iter().flat_map(wide).collect(),
-        }
-    }
-
     /// Columns and rows.
     pub fn size(&self) -> (u32, u32) {
         (self.width, self.height)
@@ -85,18 +67,6 @@ impl Screen {
                 red >> 3 << 11 | green >> 2 << 5 | blue >> 3
             })
             .collect()
-    }
-
-    /// Writes a PNG file.
-    ///
-    /// # Errors
-    /// When that fails.
-    pub fn save_png(&self, file: &Path) -> Result<(), Error> {
-        let trouble = |what: String| Error::file(file, what, "make room there");
-        RgbImage::from_raw(self.width, self.height, self.rgb.clone())
-            .ok_or_else(|| trouble("no picture".to_owned()))?
-            .save_with_format(file, ImageFormat::Png)
-            .map_err(|error| trouble(error.to_string()))
     }
 }
 
@@ -172,30 +142,34 @@ pub fn save_difference(
         .collect();
     let paths = ["actual", "expected", "difference"]
         .map(|which| folder.join(format!("{name}-{which}.png")));
-    actual.save_png(&paths[0])?;
-    Screen::from_rgb565(width, height, expected).save_png(&paths[1])?;
-    Screen::from_rgb565(width, height, &marks).save_png(&paths[2])?;
+    let pictures = [&actual.rgb565(), expected, &marks];
+    for (path, words) in paths.iter().zip(pictures) {
+        let drawn = vec![true; words.len()];
+        Picture::from_rgb565(width, height, words, drawn).save_png(path)?;
+    }
     Ok(paths)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use rhogrid::picture::widen_rgb565;
 
     #[test]
     fn every_word_survives_both_ways_of_widening() {
         let words: Vec<u16> = (0..=u16::MAX).collect();
-        let replicated = Screen::from_rgb565(256, 256, &words);
-        assert_eq!(replicated.rgb565(), words);
-        let shift = |word: &u16| {
+        let shift = |word: u16| {
             let [red, green, blue] = [word >> 11 << 3, (word >> 5 & 63) << 2, (word & 31) << 3];
             [red as u8, green as u8, blue as u8]
         };
-        let shifted = Screen {
-            rgb: words.iter().flat_map(shift).collect(),
-            ..replicated
-        };
-        assert_eq!(shifted.rgb565(), words);
+        for widen in [widen_rgb565, shift] {
+            let screen = Screen {
+                width: 256,
+                height: 256,
+                rgb: words.iter().flat_map(|word| widen(*word)).collect(),
+            };
+            assert_eq!(screen.rgb565(), words);
+        }
     }
 
     #[test]
@@ -239,9 +213,13 @@ mod tests {
     #[test]
     fn pictures_of_a_difference_are_written() {
         let folder = tempfile::tempdir().expect("a folder");
-        let actual = Screen::from_rgb565(2, 1, &[5, 6]);
+        let actual = Screen {
+            width: 2,
+            height: 1,
+            rgb: [widen_rgb565(5), widen_rgb565(6)].concat(),
+        };
         let paths = save_difference(folder.path(), "m", &actual, &[5, 7]).expect("writes");
-        let difference = image::open(&paths[2]).expect("a PNG").to_rgb8();
-        assert_eq!(difference.as_raw(), &[0, 0, 0, 255, 255, 255]);
+        let difference = Picture::load(&paths[2]).expect("a PNG");
+        assert_eq!(difference.rgb, [[0; 3], [255; 3]]);
     }
 }

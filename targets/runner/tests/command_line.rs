@@ -16,8 +16,13 @@ fn wrong_usage_is_2_and_says_what_is_right() {
         (&["sa1110", "scene.toml"], "scenes are not supported yet"),
         (&["sa1110"], "FILE.rho"),
         (&["m3", "a.rho", "--view", "near"], "YAW,PITCH,DISTANCE"),
-        (&["m3", "a.rho", "--splat", "x"], "a splat size is"),
+        (&["m3", "a.rho", "--splat", "x"], "--splat"),
         (&["m3", "a.rho", "--light", "1,2"], "X,Y,Z"),
+        (&["m3", "a.rho", "--light", "0,0,0"], "a direction"),
+        (
+            &["m3", "a.rho", "--shadows", "one-pass"],
+            "not supported yet",
+        ),
     ] {
         let output = run(arguments);
         let stderr = String::from_utf8_lossy(&output.stderr);

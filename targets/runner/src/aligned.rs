@@ -1,10 +1,4 @@
-//! Assets in host memory, aligned as the core asks for.
-
-use std::fs;
-use std::path::Path;
-
-use rhogrid::error::Error;
-use rhogrid_core::asset::Grid;
+//! Bytes in host memory that start where the core wants them.
 
 /// Bytes that start at a multiple of four.
 #[derive(Clone, Debug)]
@@ -24,34 +18,10 @@ impl AlignedBytes {
         }
     }
 
-    /// The content of a file.
-    ///
-    /// # Errors
-    /// When it cannot be read.
-    pub fn read(file: &Path) -> Result<Self, Error> {
-        let bytes = fs::read(file)
-            .map_err(|error| Error::file(file, error.to_string(), "name an asset file"))?;
-        Ok(Self::new(&bytes))
-    }
-
     /// The bytes.
     pub fn bytes(&self) -> &[u8] {
         &bytemuck::cast_slice(&self.words)[..self.length]
     }
-}
-
-/// Opens the asset that `file` holds.
-///
-/// # Errors
-/// When the core refuses it.
-pub fn open<'a>(file: &Path, bytes: &'a AlignedBytes) -> Result<Grid<'a>, Error> {
-    Grid::open(bytes.bytes()).map_err(|error| {
-        Error::file(
-            file,
-            format!("not a usable asset: {error:?}"),
-            "bake it with `rhogrid bake`",
-        )
-    })
 }
 
 #[cfg(test)]
