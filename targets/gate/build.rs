@@ -1,0 +1,6 @@
+//! Makes the gate's entry the only thing that the linker keeps.
+
+fn main() {
+    println!("cargo:rustc-link-arg-bins=--entry=gate");
+    println!("cargo:rerun-if-changed=build.rs");
+}

@@ -1,0 +1,106 @@
+//! The panic gate: an image that calls every entry of the core (and of the
+//! frame file's reader) with inputs of which the compiler knows nothing. Its
+//! panic handler calls a function that does not exist, so the image links
+//! exactly if the optimiser found every panic to be unreachable. It is never
+//! run.
+#![no_std]
+#![no_main]
+
+#[expect(
+    unsafe_code,
+    reason = "an entry for the linker, and a symbol it never finds"
+)]
+mod board;
+
+use core::hint::black_box;
+
+use rhogrid_core::asset::Grid;
+use rhogrid_core::camera::{Camera, Orbit};
+use rhogrid_core::draw::{Light, Quality, draw, shades_len};
+use rhogrid_core::numbers::{FocalPx, Length, SplatPx, Turns, Unit, Weight};
+use rhogrid_core::target::{Rect, Target, frame_hash};
+use rhogrid_frame::Frame;
+
+/// Bytes of whatever length and content.
+fn unknown_bytes() -> &'static [u8] {
+    black_box(&[])
+}
+
+/// Words of whatever length and content.
+fn unknown_words() -> &'static mut [u16] {
+    black_box(&mut [])
+}
+
+/// A camera that the caller made up.
+fn unknown_camera() -> Camera {
+    let unit = || black_box(Unit::ZERO);
+    let length = || black_box(Length::ZERO);
+    let vector = || [unit(), unit(), unit()];
+    Camera {
+        eye: [length(), length(), length()],
+        right: vector(),
+        up: vector(),
+        forward: vector(),
+        focal_px: black_box(FocalPx::ZERO),
+        width: black_box(0),
+        height: black_box(0),
+        near: length(),
+    }
+}
+
+/// Every entry once, on a whole picture and on a band.
+fn every_entry() {
+    if let Ok(frame) = Frame::open(unknown_bytes()) {
+        black_box((frame.settings(), frame.asset()));
+        black_box(frame.views().last());
+    }
+    let orbit = Orbit {
+        yaw: black_box(Turns::ZERO),
+        pitch: black_box(Turns::ZERO),
+        distance: black_box(Length::ZERO),
+    };
+    let focal_px = black_box(FocalPx::ZERO);
+    black_box(Camera::orbit(&orbit, focal_px, black_box(0), black_box(0)));
+
+    let whole = Target::new(black_box(0), black_box(0), unknown_words(), unknown_words());
+    let band = Rect {
+        left: black_box(0),
+        top: black_box(0),
+        right: black_box(0),
+        bottom: black_box(0),
+    };
+    let part = Target::band(band, unknown_words(), unknown_words());
+    draw_unknown(whole.ok());
+    draw_unknown(part.ok());
+    black_box(frame_hash(unknown_words()));
+
+    if cfg!(feature = "planted") {
+        black_box(unknown_bytes()[black_box(0)]);
+    }
+}
+
+fn draw_unknown(target: Option<Target<'_>>) {
+    let (Ok(grid), Some(mut target)) = (Grid::open(unknown_bytes()), target) else {
+        return;
+    };
+    let unit = || black_box(Unit::ZERO);
+    let light = Light {
+        towards: [unit(), unit(), unit()],
+        ambient: black_box(Weight::ZERO),
+        diffuse: black_box(Weight::ZERO),
+    };
+    let quality = Quality {
+        splat: black_box(SplatPx::ZERO),
+    };
+    black_box(grid.radius());
+    black_box(shades_len(grid.materials().len()));
+    black_box((grid.levels().len(), grid.rho(), grid.depth()));
+    black_box(draw(
+        &grid,
+        &unknown_camera(),
+        &light,
+        &quality,
+        unknown_words(),
+        &mut target,
+    ));
+}

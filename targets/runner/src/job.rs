@@ -1,0 +1,185 @@
+//! One run of the command: asset in, measurements out.
+
+use std::io::{self, Write};
+use std::path::PathBuf;
+
+use rhogrid::asset_file::AssetFile;
+use rhogrid::error::Error;
+use rhogrid_core::draw::{Light, Quality};
+
+use crate::frame_file::FrameFile;
+use crate::host::{self, HostFrame};
+use crate::machine::Machine;
+use crate::measurement::Measurement;
+use crate::qemu::{self, Guest};
+use crate::qmp::Qmp;
+use crate::screen::{self, Screen};
+use crate::session::{Ending, Event, Session, ViewResult};
+use crate::views::View;
+use crate::{failure, firmware, workspace};
+
+/// What to draw, where, and how.
+#[derive(Debug)]
+pub struct Job {
+    /// The machine.
+    pub machine: &'static Machine,
+    /// The asset.
+    pub file: PathBuf,
+    /// The views, measured in this order.
+    pub views: Vec<View>,
+    /// The light.
+    pub light: Light,
+    /// The options.
+    pub quality: Quality,
+    /// Whether results are JSON objects.
+    pub json: bool,
+}
+
+/// Draws on host and machine, prints a line for each view, and compares.
+///
+/// # Errors
+/// When something is missing or broken, or a picture is not the host's.
+pub fn run(job: &Job) -> Result<(), Error> {
+    let machine = job.machine;
+    let asset = AssetFile::load(&job.file)?;
+    let cameras = |view: &View| rhogrid_frame::View {
+        warm_up: view.warm_up(&asset),
+        measured: view.camera(&asset),
+    };
+    let cameras: Vec<_> = job.views.iter().map(cameras).collect();
+    let frame_file = FrameFile::new(asset.bytes(), &cameras, job.light, job.quality)?;
+    frame_file.check_fits(machine)?;
+    qemu::check(machine)?;
+    let host_frames = host::render(&frame_file)?;
+    let firmware = firmware::build(machine)?;
+
+    let folder = tempfile::Builder::new()
+        .prefix("rhogrid-")
+        .tempdir()
+        .map_err(|error| failure(format!("no temporary folder: {error}"), "make room there"))?;
+    let frame_path = folder.path().join("frame");
+    let socket = folder.path().join("qmp");
+    frame_file.save(&frame_path)?;
+    let mut guest = Guest::start(machine, &firmware, &frame_path, &socket)?;
+    let (ending, differing) = listen(job, &mut guest, &host_frames)?;
+    let screen_result = if machine.has_screen {
+        let dump = folder.path().join("screen.ppm");
+        Qmp::connect(&socket)?.screendump(&dump)?;
+        let settings = frame_file.open()?.settings();
+        let size = [settings.width, settings.height].map(u32::from);
+        let screen = Screen::read(&dump)?;
+        check_screen(machine, ending, size, &screen, host_frames.last())
+    } else {
+        Ok(())
+    };
+    if differing.is_empty() {
+        return screen_result;
+    }
+    Err(failure(
+        format!(
+            "{} of {} pictures differ from the host's: {}",
+            differing.len(),
+            job.views.len(),
+            differing.join(", ")
+        ),
+        screen_result.map_or_else(|error| error.to_string(), |()| String::new()),
+    ))
+}
+
+/// Follows the firmware to its end; returns the names of the views whose
+/// pictures differ from the host's.
+fn listen<'a>(
+    job: &'a Job,
+    guest: &mut Guest,
+    host_frames: &[HostFrame],
+) -> Result<(Ending, Vec<&'a str>), Error> {
+    let mut session = Session::new(job.machine.clock, job.views.len());
+    let mut differing = Vec::new();
+    let mut expected = job.views.iter().zip(host_frames);
+    loop {
+        match session.take(&guest.line()?)? {
+            Event::Preparation => {}
+            Event::End(ending) => return Ok((ending, differing)),
+            Event::View(result) => {
+                // The session lets through as many as there are.
+                let Some((view, host_frame)) = expected.next() else {
+                    continue;
+                };
+                let measurement = measurement(job.machine, view, &result, host_frame);
+                print(&measurement, job.json)?;
+                if !measurement.agrees() {
+                    differing.push(view.name.as_str());
+                }
+            }
+        }
+    }
+}
+
+fn measurement(
+    machine: &Machine,
+    view: &View,
+    result: &ViewResult,
+    host_frame: &HostFrame,
+) -> Measurement {
+    Measurement {
+        machine: machine.name.to_owned(),
+        view: view.name.clone(),
+        instructions: result.instructions,
+        cycles_estimate: None,
+        frame_hash: result.frame_hash,
+        host_frame_hash: host_frame.hash,
+        stack_bytes: result.stack_bytes,
+    }
+}
+
+fn print(measurement: &Measurement, json: bool) -> Result<(), Error> {
+    let line = if json {
+        serde_json::to_string(measurement).map_err(|error| failure(error.to_string(), ""))?
+    } else {
+        measurement.line()
+    };
+    writeln!(io::stdout(), "{line}").map_err(|error| failure(format!("cannot print: {error}"), ""))
+}
+
+/// The screen must show the host's last picture, pixel for pixel.
+fn check_screen(
+    machine: &Machine,
+    ending: Ending,
+    [width, height]: [u32; 2],
+    screen: &Screen,
+    last: Option<&HostFrame>,
+) -> Result<(), Error> {
+    let Some(last) = last else {
+        return Ok(());
+    };
+    if ending != (Ending::Shown { width, height }) || screen.size() != (width, height) {
+        return Err(failure(
+            format!(
+                "the screen of {} is {:?}, not ({width}, {height})",
+                machine.name,
+                screen.size()
+            ),
+            "",
+        ));
+    }
+    let words = screen.rgb565();
+    let Err(difference) = screen::compare(&words, &last.colour, width as usize) else {
+        return Ok(());
+    };
+    let folder = workspace().join("target/screens");
+    let paths = screen::save_difference(&folder, machine.name, screen, &last.colour)?;
+    let paths: Vec<String> = paths
+        .iter()
+        .map(|path| path.display().to_string())
+        .collect();
+    Err(failure(
+        format!(
+            "{} pixels of {}'s screen differ from the host's picture, the first at {:?}; see {}",
+            difference.pixels,
+            machine.name,
+            difference.first,
+            paths.join(", ")
+        ),
+        "",
+    ))
+}

@@ -1,0 +1,45 @@
+//! Runs frames on machines under QEMU and compares them with the host's.
+//!
+//! ```text
+//! FILE.rho -> asset -> frame_file -+-> host: frames and hashes -------+
+//!                views --^         |                                  = ?
+//!                                  +-> qemu: firmware -> session -----+
+//!                                            qmp -> screen (5:6:5) ---+
+//! ```
+
+#![forbid(unsafe_code)]
+
+pub mod aligned;
+pub mod armv4;
+pub mod clock;
+pub mod firmware;
+pub mod frame_file;
+pub mod host;
+pub mod job;
+pub mod machine;
+pub mod measurement;
+pub mod qemu;
+pub mod qmp;
+pub mod screen;
+pub mod session;
+pub mod views;
+
+use std::path::Path;
+
+use rhogrid::error::{Error, Place};
+
+/// The workspace of the firmware: the folder `targets/`.
+pub fn workspace() -> &'static Path {
+    let runner = Path::new(env!("CARGO_MANIFEST_DIR"));
+    runner.parent().unwrap_or(runner)
+}
+
+/// An error that concerns no file.
+fn failure(what: impl Into<String>, remedy: impl Into<String>) -> Error {
+    Error {
+        file: None,
+        place: Place::Whole,
+        what: what.into(),
+        remedy: remedy.into(),
+    }
+}

@@ -1,0 +1,92 @@
+//! `targets/run MACHINE FILE.rho`: draws an asset on a machine under QEMU,
+//! measures every view, and compares its pictures with the host's.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::error::ErrorKind;
+use clap::{CommandFactory, Parser};
+use rhogrid::cli::{Failure, QualityArgs, core_light, float_light};
+use rhogrid_core::draw::Quality;
+use rhogrid_core::numbers::SplatPx;
+use rhogrid_targets::job::{Job, run};
+use rhogrid_targets::machine::{self, Machine};
+use rhogrid_targets::views::{self, View};
+
+/// Draws an asset on a machine under QEMU, measures every view, and compares
+/// its pictures with the host's.
+#[derive(Parser)]
+#[command(name = "targets/run", bin_name = "targets/run")]
+struct Arguments {
+    /// The machine: sa1110 or m3
+    #[arg(value_parser = machine::find)]
+    machine: &'static Machine,
+    /// The asset
+    #[arg(value_name = "FILE.rho")]
+    file: PathBuf,
+    /// full, far, close (four yaws each) or YAW,PITCH,DISTANCE in degrees and
+    /// radii; may be repeated [default: full, far and close]
+    #[arg(long = "view", value_name = "VIEW", value_parser = parse_views, allow_hyphen_values = true)]
+    views: Vec<Vec<View>>,
+    #[command(flatten)]
+    quality: QualityArgs,
+    /// One JSON object a line
+    #[arg(long)]
+    json: bool,
+}
+
+fn parse_views(text: &str) -> Result<Vec<View>, String> {
+    views::parse(text)
+}
+
+fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    if let Err(what) = arguments.check() {
+        Arguments::command()
+            .error(ErrorKind::InvalidValue, what)
+            .exit();
+    }
+    match run(&arguments.job()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+impl Arguments {
+    /// Checks what clap cannot.
+    fn check(&self) -> Result<(), String> {
+        let extension = self.file.extension();
+        if extension.is_some_and(|extension| extension == "toml") {
+            return Err("scenes are not supported yet; name an asset (FILE.rho)".to_owned());
+        }
+        if float_light(&self.quality).casts {
+            return Err("shadows are not supported yet; leave --shadows off".to_owned());
+        }
+        match self.quality.check() {
+            Ok(()) => Ok(()),
+            Err(Failure::Usage(what)) => Err(what),
+            Err(Failure::Failed(error)) => Err(error.to_string()),
+        }
+    }
+
+    fn job(self) -> Job {
+        let views = if self.views.is_empty() {
+            views::standard()
+        } else {
+            self.views.concat()
+        };
+        Job {
+            machine: self.machine,
+            file: self.file,
+            views,
+            light: core_light(&self.quality),
+            quality: Quality {
+                splat: SplatPx::saturating_from_num(self.quality.splat),
+            },
+            json: self.json,
+        }
+    }
+}

@@ -1,0 +1,89 @@
+//! One view's result, for people and for programs.
+
+use serde::{Serialize, Serializer};
+
+/// What was measured for one view.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Measurement {
+    /// Name of the machine.
+    pub machine: String,
+    /// Name of the view.
+    pub view: String,
+    /// Instructions of the draw call.
+    pub instructions: u64,
+    /// Estimated cycles of a SA-1110; nothing estimates them yet.
+    pub cycles_estimate: Option<u64>,
+    /// Hash of the machine's picture.
+    #[serde(serialize_with = "hex")]
+    pub frame_hash: u32,
+    /// Hash of the host's picture.
+    #[serde(serialize_with = "hex")]
+    pub host_frame_hash: u32,
+    /// Stack that the draw call used below its caller's frame.
+    pub stack_bytes: u32,
+}
+
+fn hex<S: Serializer>(hash: &u32, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_str(&format_args!("{hash:08x}"))
+}
+
+impl Measurement {
+    /// Whether machine and host drew the same picture.
+    pub fn agrees(&self) -> bool {
+        self.frame_hash == self.host_frame_hash
+    }
+
+    /// A line for people.
+    pub fn line(&self) -> String {
+        let agreement = if self.agrees() {
+            "= host".to_owned()
+        } else {
+            format!("DIFFERS from the host's {:08x}", self.host_frame_hash)
+        };
+        format!(
+            "{} {:<9} {:>11} instructions  {:>6} bytes of stack  frame {:08x} {agreement}",
+            self.machine, self.view, self.instructions, self.stack_bytes, self.frame_hash
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn measurement() -> Measurement {
+        Measurement {
+            machine: "sa1110".to_owned(),
+            view: "full/90".to_owned(),
+            instructions: 1_662_612,
+            cycles_estimate: None,
+            frame_hash: 0x00ab_cdef,
+            host_frame_hash: 0x00ab_cdef,
+            stack_bytes: 112,
+        }
+    }
+
+    #[test]
+    fn json_has_stable_keys_and_eight_digits() {
+        let json = serde_json::to_string(&measurement()).expect("serialises");
+        let expected = concat!(
+            r#"{"machine":"sa1110","view":"full/90","instructions":1662612,"#,
+            r#""cycles_estimate":null,"frame_hash":"00abcdef","#,
+            r#""host_frame_hash":"00abcdef","stack_bytes":112}"#
+        );
+        assert_eq!(json, expected);
+    }
+
+    #[test]
+    fn a_difference_is_in_the_line() {
+        let mut measurement = measurement();
+        assert!(measurement.line().ends_with("frame 00abcdef = host"));
+        measurement.host_frame_hash = 1;
+        assert!(!measurement.agrees());
+        assert!(
+            measurement
+                .line()
+                .ends_with("DIFFERS from the host's 00000001")
+        );
+    }
+}
