@@ -164,3 +164,29 @@ fn two_sided_is_stored_and_obeyed() {
     assert_eq!(pixels("one.rho", 180), 0);
     assert!(pixels("both.rho", 0) > 100 && pixels("both.rho", 180) > 100);
 }
+
+/// A plate that coarse leaves hold both sides of, but fine ones do not.
+#[test]
+fn a_prefix_of_a_plate_draws_like_its_coarse_bake() {
+    let folder = Folder::new();
+    let corner = |index: u32| {
+        let side = |bit: u32, half: f64| if index >> bit & 1 == 0 { -half } else { half };
+        format!("v {} {} {}\n", side(0, 1.0), side(1, 1.0), side(2, 0.02))
+    };
+    let corners: String = (0..8).map(corner).collect();
+    let faces = "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
+    folder.write("plate.obj", corners + faces);
+    folder.done("bake plate.obj -o fine.rho --level 4");
+    folder.done("bake plate.obj -o coarse.rho --level 1");
+    let fine = std::fs::read(folder.path("fine.rho")).unwrap();
+    let coarse = std::fs::read(folder.path("coarse.rho")).unwrap();
+    // The coarse file lacks the table entries of three levels.
+    folder.write("cut.rho", &fine[..coarse.len() + 3 * 16]);
+    for yaw in [0, 90, 150, 180, 270] {
+        let hash = |name: &str| {
+            let line = format!("render {name} -o a.png --size 60x80 --yaw {yaw}");
+            folder.json(&line)["frame_hash"].clone()
+        };
+        assert_eq!(hash("cut.rho"), hash("coarse.rho"), "yaw {yaw}");
+    }
+}
