@@ -22,9 +22,9 @@ pub(super) fn triangle_touches(corners: &[DVec3; 3], cell: &Aabb) -> bool {
         local[2] - local[1],
         local[0] - local[2],
     ];
-    let normal = edges[0].cross(edges[1]);
-    let reach = normal.abs().dot(half);
-    if normal.dot(local[0]).abs() > reach {
+    // Of a needle's normal only rounding is left; with all corners projected,
+    // an axis that separates is right whatever its direction.
+    if separates(edges[0].cross(edges[1]), &local, half) {
         return false;
     }
     let units = [DVec3::X, DVec3::Y, DVec3::Z];

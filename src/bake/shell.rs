@@ -150,7 +150,8 @@ impl<S: Surface> Baker<'_, S> {
             record[bit as usize / 16] |= 1 << (bit % 16);
             let centre = bounds.min.midpoint(bounds.max);
             let (primitive, sample) = self.nearest(centre, &near);
-            if leaves && !two_sided {
+            // A file cut behind this level has these children as its leaves.
+            if !two_sided {
                 let own = self.surface.facing(primitive);
                 let faces = self.faces(&near, &bounds);
                 two_sided = cone::needs_both_sides(sample.normal, own, faces);

@@ -83,12 +83,20 @@ impl Surface for MeshSurface {
     }
 }
 
+/// Triangles lower than this, relative to their longest edge, count as their
+/// edges: what rounding leaves of their barycentric weights tells nothing.
+const NEEDLE: f64 = 1e-6;
+
 /// Barycentric weights of a triangle's point nearest to `point`: the regions
 /// of corners, edges and the face are told apart by projections on the edges.
-/// Degenerate triangles fall into the corner and edge regions.
 fn nearest_weights(corners: &[DVec3; 3], point: DVec3) -> [f64; 3] {
     let [a, b, c] = *corners;
     let (ab, ac) = (b - a, c - a);
+    let longest = [ab, ac, c - b].map(DVec3::length_squared);
+    let longest = longest.into_iter().fold(0.0, f64::max);
+    if ab.cross(ac).length_squared() <= (NEEDLE * longest).powi(2) {
+        return nearest_on_edges(corners, point);
+    }
     let from_a = point - a;
     let (d1, d2) = (ab.dot(from_a), ac.dot(from_a));
     if d1 <= 0.0 && d2 <= 0.0 {
@@ -121,4 +129,23 @@ fn nearest_weights(corners: &[DVec3; 3], point: DVec3) -> [f64; 3] {
     }
     let sum = on_ab + on_ca + on_bc;
     [on_bc / sum, on_ca / sum, on_ab / sum]
+}
+
+/// Weights of the nearest point of the three edges.
+fn nearest_on_edges(corners: &[DVec3; 3], point: DVec3) -> [f64; 3] {
+    let mut best = (f64::INFINITY, [1.0, 0.0, 0.0]);
+    for (from, to) in [(0, 1), (1, 2), (2, 0)] {
+        let (start, edge) = (corners[from], corners[to] - corners[from]);
+        let along = (point - start).dot(edge) / edge.length_squared();
+        // Not a number where the corners are one.
+        let along = if along > 0.0 { along.min(1.0) } else { 0.0 };
+        let distance = (start + edge * along - point).length_squared();
+        if distance < best.0 {
+            let mut weights = [0.0; 3];
+            weights[from] = 1.0 - along;
+            weights[to] = along;
+            best = (distance, weights);
+        }
+    }
+    best.1
 }

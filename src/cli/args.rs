@@ -4,6 +4,7 @@ use std::str::FromStr;
 
 use clap::{Args, ValueEnum};
 use glam::DVec3;
+use rhogrid_core::asset::max_depth;
 
 use super::Failure;
 use crate::bake::GridOptions;
@@ -50,6 +51,20 @@ pub struct SourceArgs {
 }
 
 impl SourceArgs {
+    /// Checks what clap cannot.
+    ///
+    /// # Errors
+    /// When the level is too deep for rho.
+    pub fn check(&self) -> Result<(), Failure> {
+        let (level, rho, deepest) = (self.level, self.rho, max_depth(self.rho) - 1);
+        if level > deepest {
+            return Err(Failure::Usage(format!(
+                "--level {level} is too deep for --rho {rho}; give at most {deepest}"
+            )));
+        }
+        Ok(())
+    }
+
     /// The grid baker's options.
     pub fn grid_options(&self) -> GridOptions {
         GridOptions {

@@ -9,6 +9,7 @@ use super::args::SourceArgs;
 use super::info::Description;
 use super::model::{bake_asset, load_geometry};
 use crate::asset_file::AssetFile;
+use crate::error::Error;
 use crate::output::write_whole;
 
 /// Arguments of `rhogrid bake`.
@@ -31,6 +32,7 @@ pub struct BakeArgs {
 
 /// Bakes and writes.
 pub fn run(args: &BakeArgs) -> Result<(), Failure> {
+    args.source.check()?;
     let mut source = args.source.clone();
     let geometry = load_geometry(&args.input, &source)?;
     let mut asset = bake_asset(&args.input, &geometry, &source)?;
@@ -39,13 +41,10 @@ pub fn run(args: &BakeArgs) -> Result<(), Failure> {
         .filter(|&limit| asset.bytes().len() as u64 > limit)
     {
         if source.level == 0 {
-            return Err(Failure::failed(
-                format!(
-                    "even level 0 takes {} bytes, more than {limit}",
-                    asset.bytes().len()
-                ),
-                "raise --max-bytes or lower --rho",
-            ));
+            let bytes = asset.bytes().len();
+            let what = format!("even level 0 takes {bytes} bytes, more than {limit}");
+            let remedy = "raise --max-bytes or lower --rho";
+            return Err(Error::file(&args.input, what, remedy).into());
         }
         source.level -= 1;
         asset = bake_asset(&args.input, &geometry, &source)?;
@@ -59,7 +58,11 @@ fn report(args: &BakeArgs, asset: &AssetFile) -> Result<(), Failure> {
     if args.json {
         super::print_json(&description)
     } else {
-        println!("{}: {}", args.output.display(), description.summary());
+        super::say(format_args!(
+            "{}: {}",
+            args.output.display(),
+            description.summary()
+        ))?;
         Ok(())
     }
 }

@@ -50,11 +50,11 @@ pub fn run(args: &CompareArgs) -> Result<(), Failure> {
         return super::print_json(&measures);
     }
     match measures.psnr {
-        None => println!("identical"),
-        Some(psnr) => println!(
+        None => super::say(format_args!("identical"))?,
+        Some(psnr) => super::say(format_args!(
             "psnr {psnr:.2} dB, ssim {:.4}, rmse {:.3}, largest {}, {} pixels differ",
             measures.ssim, measures.rmse, measures.max_error, measures.differing_pixels
-        ),
+        ))?,
     }
     Ok(())
 }

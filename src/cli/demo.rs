@@ -37,18 +37,20 @@ pub fn run() -> Result<(), Failure> {
     );
     let frame = draw_frame(&grid, &camera, &light, &quality, REPEATS);
     frame.picture().save_png(Path::new(OUTPUT))?;
-    println!(
+    super::say(format_args!(
         "built-in scene: {}",
         Description::of(&model.asset).summary()
-    );
-    println!(
+    ))?;
+    super::say(format_args!(
         "drawn with integers alone: {} samples into {}x{} pixels, {:.2} ms, frame {:08x}",
         frame.stats.samples_drawn,
         frame.width,
         frame.height,
         frame.time_ns as f64 / 1e6,
         frame.hash()
-    );
-    println!("wrote {OUTPUT}; next: rhogrid render YOUR.ply -o out.png, or rhogrid --help");
+    ))?;
+    super::say(format_args!(
+        "wrote {OUTPUT}; next: rhogrid render YOUR.ply -o out.png, or rhogrid --help"
+    ))?;
     Ok(())
 }

@@ -97,29 +97,38 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
     if args.json {
         return super::print_json(&description);
     }
-    println!("{}: {}", args.file.display(), description.summary());
+    super::say(format_args!(
+        "{}: {}",
+        args.file.display(),
+        description.summary()
+    ))?;
     if description.level < description.stored_level {
-        println!(
+        super::say(format_args!(
             "cut: the whole file reaches level {}",
             description.stored_level
-        );
+        ))?;
     }
-    println!("shell      {}", description.shell);
-    println!(
+    super::say(format_args!("shell      {}", description.shell))?;
+    super::say(format_args!(
         "two-sided  {}",
         if description.two_sided { "yes" } else { "no" }
-    );
-    println!("source up  {}", description.up);
-    println!("cells      {:?} by depth", description.cells_per_depth);
+    ))?;
+    super::say(format_args!("source up  {}", description.up))?;
+    super::say(format_args!(
+        "cells      {:?} by depth",
+        description.cells_per_depth
+    ))?;
     if let Some(alpha) = description.alpha {
-        println!("alpha      {alpha:.2} non-empty subcells a cell");
+        super::say(format_args!(
+            "alpha      {alpha:.2} non-empty subcells a cell"
+        ))?;
     }
-    println!("materials  {:?}", description.materials);
+    super::say(format_args!("materials  {:?}", description.materials))?;
     let [x, y, z] = description.centre;
-    println!("centre     {x} {y} {z}, source units, y up");
-    println!(
+    super::say(format_args!("centre     {x} {y} {z}, source units, y up"))?;
+    super::say(format_args!(
         "half side  {}, radius {}",
         description.half_side, description.radius
-    );
+    ))?;
     Ok(())
 }

@@ -9,6 +9,7 @@ mod info;
 mod model;
 mod render;
 
+use std::io::Write;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
@@ -95,6 +96,21 @@ pub fn run() -> ExitCode {
 fn print_json(value: &impl serde::Serialize) -> Result<(), Failure> {
     let text = serde_json::to_string(value)
         .map_err(|error| Failure::failed(format!("no JSON: {error}"), "report this"))?;
-    println!("{text}");
-    Ok(())
+    say(format_args!("{text}"))
+}
+
+/// Writes one line of results to stdout.
+///
+/// # Errors
+/// When nobody takes it: a closed pipe, a full disk.
+fn say(line: std::fmt::Arguments<'_>) -> Result<(), Failure> {
+    let mut stdout = std::io::stdout().lock();
+    writeln!(stdout, "{line}")
+        .and_then(|()| stdout.flush())
+        .map_err(|error| {
+            Failure::failed(
+                format!("results cannot be written to stdout: {error}"),
+                "check where it leads",
+            )
+        })
 }

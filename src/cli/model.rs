@@ -47,7 +47,7 @@ impl Model {
 }
 
 /// Whether a file calls itself an asset, by magic or by name.
-fn is_asset(input: &Path) -> bool {
+pub fn is_asset(input: &Path) -> bool {
     let by_name = input
         .extension()
         .is_some_and(|extension| extension == "rho");

@@ -12,7 +12,7 @@ use super::args::{QualityArgs, ShadowChoice, SourceArgs, ViewArgs};
 use super::frame::{
     Frame, core_camera, core_light, core_quality, draw_frame, float_light, float_view,
 };
-use super::model::{Model, load_geometry, progress_bar};
+use super::model::{Model, is_asset, load_geometry, progress_bar};
 use crate::asset_file::AssetFile;
 use crate::bake::Cube;
 use crate::geometry::Geometry;
@@ -74,6 +74,7 @@ struct Report {
 
 /// Draws and writes one picture or an orbit of them.
 pub fn run(args: &RenderArgs) -> Result<(), Failure> {
+    args.source.check()?;
     args.view.check()?;
     args.quality.check()?;
     if args.quality.shadows != ShadowChoice::Off && !args.reference {
@@ -117,11 +118,7 @@ fn no_geometry(input: &Path) -> Failure {
 }
 
 fn source_geometry(args: &RenderArgs) -> Result<Geometry, Failure> {
-    if args
-        .input
-        .extension()
-        .is_some_and(|extension| extension == "rho")
-    {
+    if is_asset(&args.input) {
         return Err(no_geometry(&args.input));
     }
     Ok(load_geometry(&args.input, &args.source)?)
@@ -165,12 +162,12 @@ fn draw_reference(
         });
         return super::print_json(&size);
     }
-    println!(
+    super::say(format_args!(
         "{}: reference, {}x{}",
         output.display(),
         reference.width,
         reference.height
-    );
+    ))?;
     Ok(())
 }
 
@@ -279,7 +276,7 @@ fn print(args: &RenderArgs, report: &Report) -> Result<(), Failure> {
     if args.json {
         return super::print_json(report);
     }
-    println!(
+    super::say(format_args!(
         "{}: {}x{}, frame {}, {} samples, {} pixels written, {:.2} ms",
         report.output.display(),
         report.width,
@@ -288,15 +285,18 @@ fn print(args: &RenderArgs, report: &Report) -> Result<(), Failure> {
         report.samples_drawn,
         report.pixels_written,
         report.time_ns as f64 / 1e6
-    );
+    ))?;
     if args.verbose {
-        println!(
+        super::say(format_args!(
             "  nodes: {} visited, {} back-facing, {} outside; median of {} frames",
             report.nodes_visited, report.nodes_back_facing, report.nodes_outside, report.frames
-        );
+        ))?;
     }
     if let Some(measures) = &report.measures {
-        println!("  against the reference: {}", describe(measures));
+        super::say(format_args!(
+            "  against the reference: {}",
+            describe(measures)
+        ))?;
     }
     Ok(())
 }

@@ -1,0 +1,192 @@
+//! `rhogrid bake` and `rhogrid info`.
+
+use rhogrid::asset_file::AssetFile;
+use serde_json::json;
+
+use super::{Folder, assert_keys};
+
+#[test]
+fn info_tells_what_bake_told() {
+    let folder = Folder::new();
+    let told = folder.json("bake cube.obj -o a.rho --rho 2 --level 3");
+    let info = folder.json("info a.rho");
+    assert_eq!(told, info);
+    let keys = [
+        "kind",
+        "rho",
+        "level",
+        "cells_per_depth",
+        "alpha",
+        "bytes_total",
+        "bits_per_leaf_sample",
+    ];
+    assert_keys(&info, &keys);
+    assert_eq!(info["kind"], "grid");
+    assert_eq!(info["rho"], 2);
+    assert_eq!(info["level"], 3);
+    assert_eq!(info["two_sided"], false);
+    let bytes = std::fs::read(folder.path("a.rho")).unwrap();
+    assert_eq!(info["bytes_total"], bytes.len());
+    let cells: Vec<u64> = serde_json::from_value(info["cells_per_depth"].clone()).unwrap();
+    assert_eq!(cells.len(), 5);
+    assert_eq!(cells[0], 1);
+    let all: u64 = cells.iter().sum();
+    let intermediate = all - cells[4];
+    let alpha = info["alpha"].as_f64().unwrap();
+    assert!((alpha - (all - 1) as f64 / intermediate as f64).abs() < 1e-12);
+    let bits = info["bits_per_leaf_sample"].as_f64().unwrap();
+    assert!((bits - 8.0 * bytes.len() as f64 / cells[4] as f64).abs() < 1e-9);
+    // The box of the cube's vertices: centre, half of the longest side.
+    assert_eq!(info["centre"], json!([2.0, 3.5, 3.5]));
+    assert_eq!(info["half_side"], 1.5);
+    let radius = (1.0f64 + 1.5 * 1.5 + 0.25).sqrt();
+    assert!((info["radius"].as_f64().unwrap() - radius).abs() < 1e-6);
+    assert!(AssetFile::new(&bytes).is_ok());
+}
+
+#[test]
+fn text_for_people_goes_to_stdout() {
+    let folder = Folder::new();
+    let text = folder.done("bake cube.obj -o a.rho --level 1");
+    assert!(
+        text.contains("a.rho") && text.contains("rho 3 level 1"),
+        "{text}"
+    );
+    let text = folder.done("info a.rho");
+    assert!(
+        text.contains("alpha") && text.contains("half side"),
+        "{text}"
+    );
+}
+
+#[test]
+fn baking_twice_gives_the_same_bytes() {
+    let folder = Folder::new();
+    folder.done("bake builtin:demo -o a.rho --level 2");
+    folder.done("bake builtin:demo -o b.rho --level 2");
+    let read = |name| std::fs::read(folder.path(name)).unwrap();
+    assert!(read("a.rho") == read("b.rho"));
+}
+
+#[test]
+fn up_turns_the_source_and_is_remembered() {
+    let folder = Folder::new();
+    // (x, y, z) of the z-up file is (x, z, -y) with y up.
+    let z_up: String = super::CUBE
+        .lines()
+        .map(
+            |line| match line.split_whitespace().collect::<Vec<_>>()[..] {
+                ["v", x, y, z] => format!("v {x} -{z} {y}\n"),
+                _ => format!("{line}\n"),
+            },
+        )
+        .collect();
+    folder.write("z-up.obj", z_up);
+    let (a, b) = (
+        folder.json("bake cube.obj -o a.rho --level 2"),
+        folder.json("bake z-up.obj -o b.rho --level 2 --up z"),
+    );
+    assert_eq!((&a["up"], &b["up"]), (&json!("y"), &json!("z")));
+    assert_eq!(a["cells_per_depth"], b["cells_per_depth"]);
+    assert_eq!(a["centre"], b["centre"]);
+    let hash = |line: &str| folder.json(line)["frame_hash"].clone();
+    let size = "--level 2 --size 48x48";
+    let upright = hash(&format!("render cube.obj -o a.png {size}"));
+    assert_eq!(
+        hash(&format!("render z-up.obj -o a.png --up z {size}")),
+        upright
+    );
+    assert_eq!(hash("render b.rho -o a.png --size 48x48"), upright);
+    assert_ne!(hash(&format!("render z-up.obj -o a.png {size}")), upright);
+}
+
+#[test]
+fn max_bytes_lowers_the_level() {
+    let folder = Folder::new();
+    let sizes: Vec<u64> = (0..4)
+        .map(|level| {
+            let info = folder.json(&format!("bake cube.obj -o a.rho --level {level}"));
+            info["bytes_total"].as_u64().unwrap()
+        })
+        .collect();
+    for (level, pair) in sizes.windows(2).enumerate() {
+        for limit in [pair[0], pair[1] - 1] {
+            let line = format!("bake cube.obj -o b.rho --level 3 --max-bytes {limit}");
+            let info = folder.json(&line);
+            assert_eq!(info["level"], level);
+            assert_eq!(info["bytes_total"], pair[0]);
+        }
+    }
+    let info = folder.json(&format!(
+        "bake cube.obj -o b.rho --level 3 --max-bytes {}",
+        sizes[3]
+    ));
+    assert_eq!(info["level"], 3);
+}
+
+#[test]
+fn a_prefix_is_a_coarser_model() {
+    let folder = Folder::new();
+    let whole = folder.json("bake cube.obj -o whole.rho --level 2");
+    let bytes = std::fs::read(folder.path("whole.rho")).unwrap();
+    // The last section's offset is where the level before it ends.
+    let entry = 64 + 16 * (usize::from(bytes[15]) - 1);
+    let end = u32::from_le_bytes(bytes[entry + 4..entry + 8].try_into().unwrap()) as usize;
+    folder.write("cut.rho", &bytes[..end]);
+    let cut = folder.json("info cut.rho");
+    assert_eq!(
+        (&cut["level"], &cut["stored_level"]),
+        (&json!(1), &json!(2))
+    );
+    assert_eq!(
+        cut["cells_per_depth"].as_array().unwrap()[..],
+        whole["cells_per_depth"].as_array().unwrap()[..3]
+    );
+    assert!(folder.done("info cut.rho").contains("cut: "));
+    folder.done("render cut.rho -o a.png --size 32x32");
+}
+
+#[test]
+fn two_sided_is_stored_and_obeyed() {
+    let folder = Folder::new();
+    folder.write(
+        "sheet.obj",
+        "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3 4\n",
+    );
+    folder.json("bake sheet.obj -o one.rho --level 2");
+    let both = folder.json("bake sheet.obj -o both.rho --level 2 --two-sided");
+    assert_eq!(both["two_sided"], true);
+    let pixels = |name: &str, yaw: u32| {
+        let line = format!("render {name} -o a.png --size 48x48 --yaw {yaw}");
+        folder.json(&line)["pixels_written"].as_u64().unwrap()
+    };
+    assert!(pixels("one.rho", 0) > 100);
+    assert_eq!(pixels("one.rho", 180), 0);
+    assert!(pixels("both.rho", 0) > 100 && pixels("both.rho", 180) > 100);
+}
+
+/// A plate that coarse leaves hold both sides of, but fine ones do not.
+#[test]
+fn a_prefix_of_a_plate_draws_like_its_coarse_bake() {
+    let folder = Folder::new();
+    let corner = |index: u32| {
+        let side = |bit: u32, half: f64| if index >> bit & 1 == 0 { -half } else { half };
+        format!("v {} {} {}\n", side(0, 1.0), side(1, 1.0), side(2, 0.02))
+    };
+    let corners: String = (0..8).map(corner).collect();
+    let faces = "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
+    folder.write("plate.obj", corners + faces);
+    folder.done("bake plate.obj -o fine.rho --level 4");
+    folder.done("bake plate.obj -o coarse.rho --level 1");
+    let fine = std::fs::read(folder.path("fine.rho")).unwrap();
+    let coarse = std::fs::read(folder.path("coarse.rho")).unwrap();
+    // The coarse file lacks the table entries of three levels.
+    folder.write("cut.rho", &fine[..coarse.len() + 3 * 16]);
+    for yaw in [0, 90, 150, 180, 270] {
+        let hash = |name: &str| {
+            let line = format!("render {name} -o a.png --size 60x80 --yaw {yaw}");
+            folder.json(&line)["frame_hash"].clone()
+        };
+        assert_eq!(hash("cut.rho"), hash("coarse.rho"), "yaw {yaw}");
+    }
+}

@@ -1,0 +1,273 @@
+//! How assets are damaged.
+
+use std::ops::Range;
+
+use rhogrid_core::asset::node::{flags_shift, halves};
+use rhogrid_core::asset::{HEADER_BYTES, SECTION_BYTES, SECTION_LEVEL};
+
+/// Steele's splitmix64: any two seeds give unrelated sequences.
+pub struct Random(u64);
+
+impl Random {
+    pub fn of(seed: u64, index: u64) -> Self {
+        Self(seed ^ index.wrapping_mul(0xd134_2543_de82_ef95))
+    }
+
+    pub fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    pub fn below(&mut self, limit: usize) -> usize {
+        (self.next() % limit as u64) as usize
+    }
+
+    pub fn pick<T: Copy>(&mut self, of: &[T]) -> T {
+        of[self.below(of.len())]
+    }
+}
+
+/// An asset and where its parts lie.
+pub struct Layout {
+    pub name: &'static str,
+    pub bytes: Vec<u8>,
+    rho: u8,
+    levels: Vec<Level>,
+}
+
+struct Level {
+    links: Range<usize>,
+    nodes: Range<usize>,
+    attributes: Range<usize>,
+    end: usize,
+}
+
+impl Layout {
+    pub fn new(name: &'static str, rho: u8, bytes: Vec<u8>) -> Self {
+        let word = |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().unwrap()) as usize;
+        let mut cells = vec![];
+        let mut levels = vec![];
+        for entry in (0..usize::from(bytes[15])).map(|index| HEADER_BYTES + SECTION_BYTES * index) {
+            if word(entry) != SECTION_LEVEL as usize {
+                continue;
+            }
+            let (start, length) = (word(entry + 4), word(entry + 8));
+            let (links, parents) = match cells[..] {
+                [] => (0, 0),
+                [parents] => (1, parents),
+                [.., above, parents] => (above, parents),
+            };
+            let links = start + 4..start + 4 + 4 * links;
+            let nodes = links.end..links.end + 2 * halves(rho) * parents;
+            let attributes = nodes.end.next_multiple_of(4);
+            cells.push(word(start));
+            levels.push(Level {
+                links,
+                nodes,
+                attributes: attributes..attributes + 2 * word(start),
+                end: start + length,
+            });
+        }
+        Self {
+            name,
+            bytes,
+            rho,
+            levels,
+        }
+    }
+}
+
+/// A damaged copy and what was done to it.
+pub struct Mutant {
+    pub bytes: Vec<u8>,
+    pub log: Vec<String>,
+}
+
+const WORDS: [u32; 16] = [
+    0,
+    1,
+    2,
+    4,
+    0x7f,
+    0xff,
+    0x7fff,
+    0x8000,
+    0xffff,
+    0x1_0000,
+    0x7fff_fffc,
+    0x7fff_ffff,
+    0x8000_0000,
+    0xffff_fff0,
+    0xffff_fffc,
+    0xffff_ffff,
+];
+
+impl Mutant {
+    pub fn new(asset: &Layout) -> Self {
+        Self {
+            bytes: asset.bytes.clone(),
+            log: Vec::new(),
+        }
+    }
+
+    /// One to four changes. In half of the cases only such that keep the
+    /// asset's shape, so that they reach the drawing.
+    pub fn damage(&mut self, asset: &Layout, random: &mut Random) {
+        let is_gentle = random.below(2) == 0;
+        for _ in 0..=random.below(4) {
+            if is_gentle {
+                self.gentle(asset, random);
+            } else {
+                self.rough(asset, random);
+            }
+        }
+    }
+
+    fn set(&mut self, at: usize, with: &[u8]) {
+        self.log.push(format!("{with:02x?} at {at}"));
+        if let Some(place) = self.bytes.get_mut(at..at + with.len()) {
+            place.copy_from_slice(with);
+        }
+    }
+
+    fn half(&self, at: usize) -> u16 {
+        let half = self.bytes.get(at..at + 2);
+        half.map_or(0, |half| u16::from_le_bytes([half[0], half[1]]))
+    }
+
+    /// A random 16-bit word of a range.
+    fn place(range: &Range<usize>, random: &mut Random) -> usize {
+        range.start + 2 * random.below(range.len() / 2)
+    }
+
+    fn gentle(&mut self, asset: &Layout, random: &mut Random) {
+        let level = &asset.levels[random.below(asset.levels.len())];
+        let record = 2 * halves(asset.rho);
+        match random.below(6) {
+            0 => {
+                let normal = random.next() as u16 & 0x1fff;
+                let at = Self::place(&level.attributes, random);
+                let material = self.half(at) & 0xe000;
+                self.set(at, &(material | normal).to_le_bytes());
+            }
+            1 => {
+                // May name a material that is not there.
+                let at = Self::place(&level.attributes, random);
+                self.set(at, &(random.next() as u16).to_le_bytes());
+            }
+            2 if !level.nodes.is_empty() => {
+                let at =
+                    level.nodes.start + record * random.below(level.nodes.len() / record) + record
+                        - 2;
+                let flags = 31 << flags_shift(asset.rho);
+                let own = self.half(at) & !flags;
+                self.set(at, &(own | (random.next() as u16 & flags)).to_le_bytes());
+            }
+            3 if !level.nodes.is_empty() => self.rotate_mask(asset.rho, &level.nodes, random),
+            4 => self.set(16, &(1 + random.next() as u32 % (2 << 28)).to_le_bytes()),
+            _ => {
+                let end = asset.levels[random.below(asset.levels.len())].end;
+                self.log.push(format!("cut at {end}"));
+                self.bytes.truncate(end);
+            }
+        }
+    }
+
+    /// Moves the cells of a node and keeps their number.
+    fn rotate_mask(&mut self, rho: u8, nodes: &Range<usize>, random: &mut Random) {
+        let size = halves(rho);
+        let at = nodes.start + 2 * size * random.below(nodes.len() / 2 / size);
+        let bits = usize::from(rho).pow(3);
+        let read: Vec<bool> = (0..bits)
+            .map(|bit| self.half(at + bit / 16 * 2) >> (bit % 16) & 1 == 1)
+            .collect();
+        let turn = random.below(bits);
+        for word in 0..size {
+            let mut half = self.half(at + 2 * word);
+            for bit in (16 * word..16 * word + 16).filter(|&bit| bit < bits) {
+                half =
+                    half & !(1 << (bit % 16)) | u16::from(read[(bit + turn) % bits]) << (bit % 16);
+            }
+            self.set(at + 2 * word, &half.to_le_bytes());
+        }
+    }
+
+    fn rough(&mut self, asset: &Layout, random: &mut Random) {
+        let length = self.bytes.len().max(1);
+        let at = random.below(length);
+        let level = &asset.levels[random.below(asset.levels.len())];
+        match random.below(12) {
+            0 => {
+                let flipped = self.bytes.get(at).copied().unwrap_or(0) ^ 1 << random.below(8);
+                self.set(at, &[flipped]);
+            }
+            1 => self.set(at, &[random.next() as u8]),
+            2 => self.set(at & !1, &(random.pick(&WORDS) as u16).to_le_bytes()),
+            3 => self.set(at & !3, &random.pick(&WORDS).to_le_bytes()),
+            4 => {
+                self.log.push(format!("cut at {at}"));
+                self.bytes.truncate(at);
+            }
+            5 => {
+                let more = 1 + random.below(64);
+                self.log.push(format!("{more} bytes more"));
+                self.bytes.extend((0..more).map(|_| random.next() as u8));
+            }
+            6 => {
+                let other = random.below(length);
+                self.log.push(format!("{at} and {other} swapped"));
+                if at.max(other) < self.bytes.len() {
+                    self.bytes.swap(at, other);
+                }
+            }
+            7 => {
+                // A section's kind, offset, length or checksum.
+                let sections = usize::from(asset.bytes[15]);
+                let at =
+                    HEADER_BYTES + SECTION_BYTES * random.below(sections) + 4 * random.below(4);
+                let own = asset.bytes[at..at + 4]
+                    .try_into()
+                    .map_or(0, u32::from_le_bytes);
+                let near = [
+                    own.wrapping_add(4),
+                    own.wrapping_sub(4),
+                    own ^ 3,
+                    own.wrapping_mul(2),
+                ];
+                let value = if random.below(2) == 0 {
+                    random.pick(&near)
+                } else {
+                    random.pick(&WORDS)
+                };
+                self.set(at, &value.to_le_bytes());
+            }
+            8 => {
+                // Two entries of the table change places.
+                let sections = usize::from(asset.bytes[15]);
+                let entry = |index: usize| HEADER_BYTES + SECTION_BYTES * index;
+                let (a, b) = (entry(random.below(sections)), entry(random.below(sections)));
+                let [first, second] = [a, b].map(|at| asset.bytes[at..at + SECTION_BYTES].to_vec());
+                self.set(a, &second);
+                self.set(b, &first);
+            }
+            9 => {
+                // The header's small fields: version to section count.
+                let at = 4 + random.below(12);
+                self.set(at, &[random.next() as u8 % 18]);
+            }
+            10 if !level.links.is_empty() => {
+                let at = level.links.start + 4 * random.below(level.links.len() / 4);
+                self.set(at, &random.pick(&WORDS).to_le_bytes());
+            }
+            _ => {
+                // Radius, centre and half side: any bits, NaN among them.
+                let at = 16 + 8 * random.below(6);
+                let value =
+                    random.pick(&[0, u64::MAX, 1, 0x7ff0_0000_0000_0000, 1 << 63, random.0]);
+                self.set(at, &value.to_le_bytes());
+            }
+        }
+    }
+}
