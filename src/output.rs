@@ -16,20 +16,26 @@ pub fn write_whole(
     path: &Path,
     fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> Result<(), Error> {
-    if path.metadata().is_ok_and(|existing| !existing.is_file()) {
+    // A link stays, and the file that it leads to is replaced.
+    let target = path.canonicalize().unwrap_or_else(|_| path.to_path_buf());
+    let is_special = ["/dev", "/proc", "/sys"]
+        .iter()
+        .any(|folder| [path, &target].iter().any(|path| path.starts_with(folder)));
+    if is_special || target.metadata().is_ok_and(|existing| !existing.is_file()) {
         return Err(Error::file(
             path,
             "exists and is no ordinary file",
             "choose another name",
         ));
     }
+    let (shown, path) = (path, target.as_path());
     let folder = match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
     };
     fill_and_rename(path, folder, fill).map_err(|error| {
         let remedy = "check that its folder exists, may be written to and has room";
-        Error::file(path, format!("cannot be written: {error}"), remedy)
+        Error::file(shown, format!("cannot be written: {error}"), remedy)
     })
 }
 

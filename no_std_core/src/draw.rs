@@ -27,12 +27,21 @@ pub struct Quality {
     /// A cell whose projected bounding rectangle has no side longer than
     /// this is drawn as one splat.
     pub splat: SplatPx,
+    /// Leaves of a block are placed by additions in screen space where that
+    /// errs by at most so many pixels; zero projects each of them.
+    pub distortion: SplatPx,
+}
+
+impl Quality {
+    /// The distortion that is allowed unless somebody says otherwise, pixels.
+    pub const DISTORTION: SplatPx = SplatPx::lit("0.125");
 }
 
 impl Default for Quality {
     fn default() -> Self {
         Self {
             splat: SplatPx::ONE,
+            distortion: Self::DISTORTION,
         }
     }
 }

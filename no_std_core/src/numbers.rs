@@ -1,9 +1,9 @@
 //! Every number format of the core, in one place.
 //!
 //! Boundary values are `fixed` types under role names. Inside the draw loops
-//! values are plain `i32` in *block fixed point*: one exponent for each
-//! instance and frame, chosen in [`crate::camera`], so that coordinates fill
-//! the word. Plain arithmetic traps on overflow in debug and test builds;
+//! values are plain `i32` in *block fixed point*: X and Y share an exponent for
+//! each frame and w has its own, chosen in [`crate::projection`], so that
+//! coordinates fill the word. Plain arithmetic traps on overflow in debug and test builds;
 //! release relies on no wrapping that is not called `wrapping`.
 
 use fixed::types::{I2F30, I20F12, I32F32, U0F32, U1F31, U16F16};

@@ -69,9 +69,11 @@ pub(crate) struct Projection {
 /// depth = (mantissa * reciprocal's mantissa >> shift) - offset.
 #[derive(Clone, Copy, Debug)]
 struct DepthScale {
-    mantissa: i64,
+    mantissa: u32,
     shift: i32,
     offset: i64,
+    /// The offset, or what makes every 30-bit value end at one.
+    narrow_offset: i32,
     /// Nearest and farthest w of the scale, block units.
     range: [i64; 2],
 }
@@ -134,7 +136,19 @@ impl Projection {
     /// Depth of a reciprocal w.
     #[inline(always)]
     pub fn depth(&self, w: Reciprocal) -> u16 {
+        let shift = self.depth.shift - w.shift;
+        if let 32..=63 = shift {
+            // The product's upper word is below 2^30.
+            let high = (u64::from(w.mantissa) * u64::from(self.depth.mantissa)) >> 32;
+            let scaled = (high as u32 >> (shift - 32)) as i32;
+            return (scaled - self.depth.narrow_offset).clamp(1, 65535) as u16;
+        }
         (self.depth.scaled(w) - self.depth.offset).clamp(1, 65535) as u16
+    }
+
+    /// Depth without its offset: proportional to 1 / w.
+    pub fn depth_scaled(&self, w: Reciprocal) -> i64 {
+        self.depth.scaled(w)
     }
 }
 
@@ -186,20 +200,22 @@ impl DepthScale {
         let scale = 65534 * i128::from(near) * i128::from(far) / i128::from(span);
         let shift = bit_length(scale.unsigned_abs()) - 31;
         let mut depth = Self {
-            mantissa: shift_round(scale, shift),
+            mantissa: shift_round(scale, shift) as u32,
             shift: 62 - shift,
             offset: 0,
+            narrow_offset: 0,
             range: [near, far],
         };
         // By the same table: its error at far would shift all depths.
         depth.offset = depth.scaled(reciprocal(far as u32)) - 1;
+        depth.narrow_offset = depth.offset.min(1 << 30) as i32;
         depth
     }
 
     /// The scale over w, rounded down: 31 x 31 bits.
-    #[inline(always)]
+    #[inline(never)]
     fn scaled(&self, w: Reciprocal) -> i64 {
-        (i64::from(w.mantissa) * self.mantissa) >> (self.shift - w.shift).clamp(0, 63)
+        (i64::from(w.mantissa) * i64::from(self.mantissa)) >> (self.shift - w.shift).clamp(0, 63)
     }
 }
 

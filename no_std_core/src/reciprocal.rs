@@ -14,6 +14,8 @@
 //! relative error is below 2^-18.9, and r never grows with w: a test walks
 //! all 2^24 operands that the interpolation tells apart.
 
+use crate::numbers::saturate;
+
 const STEPS: usize = 256;
 
 static TABLE: [u32; STEPS + 1] = {
@@ -71,11 +73,21 @@ impl Reciprocal {
     #[inline(always)]
     pub fn times(self, value: i32, scale: i32) -> i32 {
         let product = i64::from(value) * i64::from(self.mantissa);
-        // Where the shift would be to the left, every non-zero product
-        // saturates anyway: it is at least 2^30 - 2^10 before.
-        let shift = (62 - scale - self.shift).clamp(0, 63);
-        crate::numbers::saturate(product >> shift)
+        let shift = 62 - scale - self.shift;
+        if let 32..=63 = shift {
+            // The upper word is at most 2^30 in magnitude.
+            return (product >> 32) as i32 >> (shift - 32);
+        }
+        wide_shift(product, shift)
     }
+}
+
+/// Shifts a product right and saturates it, for any shift. Where the shift
+/// would be to the left, every non-zero product saturates anyway: it is at
+/// least 2^30 - 2^10 before.
+#[inline(never)]
+fn wide_shift(product: i64, shift: i32) -> i32 {
+    saturate(product >> shift.clamp(0, 63))
 }
 
 #[cfg(test)]

@@ -6,7 +6,12 @@
 
 use crate::asset::Rgb;
 use crate::draw::Light;
-use crate::normal::{CODES, COMPONENT_BITS, decode};
+use crate::normal::{CODES, COMPONENT_BITS, OCTANT, OCTANT_CODES, decode};
+
+/// Brightness steps between black and a material's full colour. A step is an
+/// eighth of a level of 6-bit green: rounding to it adds 1/16 to the half level
+/// that rounding to 5:6:5 costs.
+const STEPS: usize = 512;
 
 /// What shading needs to know of light and materials.
 #[derive(Clone, Copy)]
@@ -20,30 +25,80 @@ struct Model<'a> {
 }
 
 impl Model<'_> {
-    /// Lambert's cosine, 0 to 1, Q1.15.
-    fn cosine(&self, normal: [i32; 3]) -> i32 {
+    /// Ambient and Lambert's diffuse light on a normal: 0 to [`STEPS`].
+    #[inline(always)]
+    fn brightness(&self, normal: [i32; 3], towards: [i32; 3]) -> u16 {
         let [x, y, z] = normal;
         // Q2.14 x Q2.14: two unit vectors give 2^28 and some rounding, a unit
         // vector and any other less than 2^30.
-        let dot = x * self.towards[0] + y * self.towards[1] + z * self.towards[2];
-        (dot >> (2 * COMPONENT_BITS - 15)).clamp(0, 1 << 15)
+        let dot = x * towards[0] + y * towards[1] + z * towards[2];
+        let cosine = (dot >> (2 * COMPONENT_BITS - 15)).clamp(0, 1 << 15);
+        // Q1.15, at most one; the product is at most 2^15 x 2^15.
+        let weight = (self.ambient + ((self.diffuse * cosine) >> 15)).clamp(0, 1 << 15);
+        ((weight + 32) >> 6) as u16
     }
 
     fn colour(&self, attribute: u16) -> u16 {
-        let cosine = self.cosine(decode(attribute));
-        let material = self
-            .materials
-            .get(usize::from(attribute >> 13))
-            .copied()
-            .unwrap_or([0; 3]);
-        // Q1.15, at most one; the product is below 2^16 x 2^15.
-        let weight = (self.ambient + ((self.diffuse * cosine) >> 15)).clamp(0, 1 << 15) as u32;
-        // 8 bits x 5 or 6 bits x Q1.15: below 2^30.
-        let channel =
-            |value: u8, levels: u32| (u32::from(value) * levels * weight / 255 + (1 << 14)) >> 15;
-        let [red, green, blue] = material;
-        (channel(red, 31) << 11 | channel(green, 63) << 5 | channel(blue, 31)) as u16
+        let material = self.materials.get(usize::from(attribute >> 13));
+        let brightness = self.brightness(decode(attribute), self.towards);
+        shaded(material.copied().unwrap_or([0; 3]), brightness)
     }
+
+    /// Fills the table, material after material. The first material's part
+    /// holds brightnesses until all others have used them.
+    fn fill(&self, table: &mut [u16]) {
+        let Some((first, others)) = table.split_at_mut_checked(CODES) else {
+            return;
+        };
+        for (codes, octant) in first.chunks_exact_mut(OCTANT_CODES).zip(0u16..) {
+            // Flipping the light's signs instead of the normals'.
+            let flipped = |axis: usize| match octant >> axis & 1 {
+                0 => self.towards[axis],
+                _ => -self.towards[axis],
+            };
+            let towards = [flipped(0), flipped(1), flipped(2)];
+            for (brightness, normal) in codes.iter_mut().zip(&OCTANT) {
+                *brightness = self.brightness(normal.map(i32::from), towards);
+            }
+        }
+        let mut materials = self.materials.iter();
+        let own = materials.next();
+        for (colours, &material) in others.chunks_exact_mut(CODES).zip(materials) {
+            let ramp = ramp(material);
+            for (colour, &brightness) in colours.iter_mut().zip(&*first) {
+                *colour = lookup(&ramp, brightness);
+            }
+        }
+        if let Some(&material) = own {
+            let ramp = ramp(material);
+            for colour in first {
+                *colour = lookup(&ramp, *colour);
+            }
+        }
+    }
+}
+
+/// A material's colour at a brightness, RGB565, rounded to nearest.
+fn shaded(material: Rgb, brightness: u16) -> u16 {
+    // 8 bits x 5 or 6 bits x Q9: below 2^23.
+    let channel = |value: u8, levels: u32| {
+        (u32::from(value) * levels * u32::from(brightness) / 255 + STEPS as u32 / 2) / STEPS as u32
+    };
+    let [red, green, blue] = material;
+    (channel(red, 31) << 11 | channel(green, 63) << 5 | channel(blue, 31)) as u16
+}
+
+fn ramp(material: Rgb) -> [u16; STEPS + 1] {
+    let mut ramp = [0; STEPS + 1];
+    for (colour, brightness) in ramp.iter_mut().zip(0u16..) {
+        *colour = shaded(material, brightness);
+    }
+    ramp
+}
+
+#[inline(always)]
+fn lookup(ramp: &[u16; STEPS + 1], brightness: u16) -> u16 {
+    ramp.get(usize::from(brightness)).copied().unwrap_or(0)
 }
 
 /// Colours of attributes for one frame.
@@ -64,9 +119,7 @@ impl<'a> Shader<'a> {
         };
         let table = match memory.get_mut(..CODES * materials.len()) {
             Some(table) => {
-                for (colour, attribute) in table.iter_mut().zip(0u16..=u16::MAX) {
-                    *colour = model.colour(attribute);
-                }
+                model.fill(table);
                 &*table
             }
             None => &[],

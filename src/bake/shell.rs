@@ -203,9 +203,12 @@ impl<S: Surface> Baker<'_, S> {
             },
         );
         for (primitive, own) in near {
-            if own.distance_squared(centre) < found.1.distance_squared {
+            // Of equally near points, rounding aside, the first primitive's
+            // counts, so that both sides of a thin sheet are of one kind.
+            let nearest = found.1.distance_squared * (1.0 - 1e-9) - 1e-20;
+            if own.distance_squared(centre) < nearest {
                 let sample = self.surface.sample_at(*primitive, centre);
-                if sample.distance_squared < found.1.distance_squared {
+                if sample.distance_squared < nearest {
                     found = (*primitive, sample);
                 }
             }

@@ -1,5 +1,6 @@
 //! Options that several commands share.
 
+use std::path::Path;
 use std::str::FromStr;
 
 use clap::{Args, ValueEnum};
@@ -24,27 +25,35 @@ pub enum ShellChoice {
     Fat,
 }
 
+/// How wide a sample's attribute is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum AttributeChoice {
+    /// 13-bit normal and 3-bit material
+    #[value(name = "16")]
+    Bits16,
+}
+
 /// How a source becomes an asset.
 #[derive(Clone, Debug, Args)]
 pub struct SourceArgs {
     /// What to bake
     #[arg(long = "as", value_enum, default_value = "grid")]
     pub representation: Representation,
-    /// Subdivisions of each axis of a cell
-    #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u8).range(2..=5))]
-    pub rho: u8,
-    /// Level K has rho^(K + 1) cells on an axis
-    #[arg(long, value_name = "K", default_value_t = 4)]
-    pub level: u8,
+    /// Subdivisions of each axis of a cell [default: 3]
+    #[arg(long, value_parser = clap::value_parser!(u8).range(2..=5))]
+    pub rho: Option<u8>,
+    /// Level K has rho^(K + 1) cells on an axis [default: 4]
+    #[arg(long, value_name = "K", allow_negative_numbers = true)]
+    pub level: Option<u8>,
     /// Which cells to keep
     #[arg(long, value_enum, default_value = "fat")]
     pub shell: ShellChoice,
-    /// Which source axis points up
-    #[arg(long, value_enum, default_value = "y")]
-    pub up: Up,
+    /// Which source axis points up [default: y]
+    #[arg(long, value_enum)]
+    pub up: Option<Up>,
     /// Bits of a sample's attribute
-    #[arg(long, value_name = "BITS", default_value_t = 16, value_parser = clap::value_parser!(u8).range(16..=16))]
-    pub attributes: u8,
+    #[arg(long, value_enum, value_name = "BITS", default_value = "16")]
+    pub attributes: AttributeChoice,
     /// Draw every surface from both sides
     #[arg(long)]
     pub two_sided: bool,
@@ -56,7 +65,8 @@ impl SourceArgs {
     /// # Errors
     /// When the level is too deep for rho.
     pub fn check(&self) -> Result<(), Failure> {
-        let (level, rho, deepest) = (self.level, self.rho, max_depth(self.rho) - 1);
+        let GridOptions { rho, level, .. } = self.grid_options();
+        let deepest = max_depth(rho) - 1;
         if level > deepest {
             return Err(Failure::Usage(format!(
                 "--level {level} is too deep for --rho {rho}; give at most {deepest}"
@@ -65,13 +75,34 @@ impl SourceArgs {
         Ok(())
     }
 
+    /// Refuses options of baking where nothing is baked.
+    ///
+    /// # Errors
+    /// When one of them is given.
+    pub fn check_unused(&self, asset: &Path) -> Result<(), Failure> {
+        let given = [
+            ("--rho", self.rho.is_some()),
+            ("--level", self.level.is_some()),
+            ("--up", self.up.is_some()),
+            ("--two-sided", self.two_sided),
+        ];
+        match given.iter().find(|(_, is_given)| *is_given) {
+            None => Ok(()),
+            Some((option, _)) => Err(Failure::Usage(format!(
+                "{option} is for baking, and {} is an asset already; give the mesh it was baked from",
+                asset.display()
+            ))),
+        }
+    }
+
     /// The grid baker's options.
     pub fn grid_options(&self) -> GridOptions {
+        let defaults = GridOptions::default();
         GridOptions {
-            rho: self.rho,
-            level: self.level,
+            rho: self.rho.unwrap_or(defaults.rho),
+            level: self.level.unwrap_or(defaults.level),
             two_sided: self.two_sided,
-            up: self.up,
+            up: self.up.unwrap_or(defaults.up),
         }
     }
 }
@@ -136,7 +167,7 @@ pub struct ViewArgs {
     #[arg(long, value_name = "D", default_value_t = 15.0, allow_negative_numbers = true, conflicts_with_all = ["eye", "look_at"])]
     pub pitch: f64,
     /// Distance from the centre, in radii of the model
-    #[arg(long, value_name = "R", default_value_t = 2.6, conflicts_with_all = ["eye", "look_at"])]
+    #[arg(long, value_name = "R", default_value_t = 2.6, allow_negative_numbers = true, conflicts_with_all = ["eye", "look_at"])]
     pub distance: f64,
     /// Eye position in the source's units, y up
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
@@ -150,7 +181,12 @@ pub struct ViewArgs {
     )]
     pub look_at: Option<Triple>,
     /// Vertical field of view, degrees
-    #[arg(long, value_name = "D", default_value_t = 53.13)]
+    #[arg(
+        long,
+        value_name = "D",
+        default_value_t = 53.13,
+        allow_negative_numbers = true
+    )]
     pub fov: f64,
 }
 
@@ -179,10 +215,21 @@ impl ViewArgs {
 pub enum ShadowChoice {
     /// No shadows
     Off,
-    /// A shadow map of its own; --reference traces rays
+    /// A shadow map of its own
     TwoPass,
-    /// A shadow map in the same pass; --reference traces rays
+    /// A shadow map in the same pass
     OnePass,
+}
+
+/// How the leaves of a block reach the screen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum PathChoice {
+    /// Additions where they err by an eighth of a pixel at most
+    Auto,
+    /// A reciprocal for each leaf
+    Exact,
+    /// Additions wherever a block lies in front of the eye
+    Affine,
 }
 
 /// Light and knobs of a frame.
@@ -198,9 +245,17 @@ pub struct QualityArgs {
     pub light: Triple,
     /// A cell whose projection has no side longer than this is one splat,
     /// pixels
-    #[arg(long, value_name = "PX", default_value_t = 1.0)]
+    #[arg(
+        long,
+        value_name = "PX",
+        default_value_t = 1.0,
+        allow_negative_numbers = true
+    )]
     pub splat: f64,
-    /// Shadows
+    /// How leaves are projected
+    #[arg(long, value_enum, default_value = "auto")]
+    pub path: PathChoice,
+    /// Shadows; for --reference alone, which traces rays
     #[arg(long, value_enum, default_value = "off")]
     pub shadows: ShadowChoice,
 }

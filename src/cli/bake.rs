@@ -7,7 +7,7 @@ use clap::Args;
 use super::Failure;
 use super::args::SourceArgs;
 use super::info::Description;
-use super::model::{bake_asset, load_geometry};
+use super::model::{bake_asset, check_distinct, load_geometry};
 use crate::asset_file::AssetFile;
 use crate::error::Error;
 use crate::output::write_whole;
@@ -33,6 +33,7 @@ pub struct BakeArgs {
 /// Bakes and writes.
 pub fn run(args: &BakeArgs) -> Result<(), Failure> {
     args.source.check()?;
+    check_distinct(&args.input, &args.output)?;
     let mut source = args.source.clone();
     let geometry = load_geometry(&args.input, &source)?;
     let mut asset = bake_asset(&args.input, &geometry, &source)?;
@@ -40,13 +41,14 @@ pub fn run(args: &BakeArgs) -> Result<(), Failure> {
         .max_bytes
         .filter(|&limit| asset.bytes().len() as u64 > limit)
     {
-        if source.level == 0 {
+        let level = source.grid_options().level;
+        if level == 0 {
             let bytes = asset.bytes().len();
             let what = format!("even level 0 takes {bytes} bytes, more than {limit}");
             let remedy = "raise --max-bytes or lower --rho";
             return Err(Error::file(&args.input, what, remedy).into());
         }
-        source.level -= 1;
+        source.level = Some(level - 1);
         asset = bake_asset(&args.input, &geometry, &source)?;
     }
     write_whole(&args.output, |file| file.write_all(asset.bytes()))?;

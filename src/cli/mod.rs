@@ -17,7 +17,7 @@ use clap::{Parser, Subcommand};
 use crate::error::{Error, Place};
 
 pub use args::{QualityArgs, SourceArgs, Triple, ViewArgs};
-pub use frame::{Frame, core_camera, core_light, draw_frame, float_light};
+pub use frame::{Frame, core_camera, core_light, core_quality, draw_frame, float_light};
 pub use model::Model;
 
 /// Bakes, previews and measures 3D assets for devices without FPU, GPU or

@@ -32,6 +32,7 @@ impl Model {
     /// When the input cannot be read or baked.
     pub fn open(input: &Path, source: &SourceArgs) -> Result<Self, Failure> {
         if is_asset(input) {
+            source.check_unused(input)?;
             return Ok(Self {
                 asset: AssetFile::load(input)?,
                 geometry: None,
@@ -50,7 +51,7 @@ impl Model {
 pub fn is_asset(input: &Path) -> bool {
     let by_name = input
         .extension()
-        .is_some_and(|extension| extension == "rho");
+        .is_some_and(|extension| extension.eq_ignore_ascii_case("rho"));
     let magic = || {
         let mut first = [0; 4];
         let mut file = std::fs::File::open(input).ok()?;
@@ -63,13 +64,13 @@ pub fn is_asset(input: &Path) -> bool {
 /// Loads a mesh or cloud, or makes the built-in scene, y up.
 pub fn load_geometry(input: &Path, source: &SourceArgs) -> Result<Geometry, Error> {
     if input == Path::new(DEMO) {
-        return Ok(Geometry::Mesh(import::procedural::demo()).turned(source.up));
+        return Ok(Geometry::Mesh(import::procedural::demo()).turned(source.grid_options().up));
     }
     let imported = import::load(input)?;
     for note in &imported.notes {
         eprintln!("{}: note: {note}", input.display());
     }
-    Ok(imported.geometry.turned(source.up))
+    Ok(imported.geometry.turned(source.grid_options().up))
 }
 
 /// Bakes geometry, with a progress bar where stderr is a terminal.
@@ -106,4 +107,18 @@ pub fn progress_bar() -> ProgressBar {
     let style = ProgressStyle::with_template("{bar:40} {pos}/{len} {elapsed}")
         .unwrap_or_else(|_| ProgressStyle::default_bar());
     ProgressBar::new(0).with_style(style)
+}
+
+/// Refuses to write over what is read.
+///
+/// # Errors
+/// When both names lead to one file.
+pub fn check_distinct(input: &Path, output: &Path) -> Result<(), Failure> {
+    match (input.canonicalize(), output.canonicalize()) {
+        (Ok(input), Ok(output)) if input == output => Err(Failure::Usage(format!(
+            "the output would replace the input {}; give another name",
+            input.display()
+        ))),
+        _ => Ok(()),
+    }
 }

@@ -12,7 +12,7 @@ use super::args::{QualityArgs, ShadowChoice, SourceArgs, ViewArgs};
 use super::frame::{
     Frame, core_camera, core_light, core_quality, draw_frame, float_light, float_view,
 };
-use super::model::{Model, is_asset, load_geometry, progress_bar};
+use super::model::{Model, check_distinct, is_asset, load_geometry, progress_bar};
 use crate::asset_file::AssetFile;
 use crate::bake::Cube;
 use crate::geometry::Geometry;
@@ -77,6 +77,17 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     args.source.check()?;
     args.view.check()?;
     args.quality.check()?;
+    check_distinct(&args.input, &args.output)?;
+    if args
+        .output
+        .extension()
+        .is_some_and(|extension| !extension.eq_ignore_ascii_case("png"))
+    {
+        let output = args.output.display();
+        return Err(Failure::Usage(format!(
+            "{output}: pictures are PNG; name it OUT.png"
+        )));
+    }
     if args.quality.shadows != ShadowChoice::Off && !args.reference {
         return Err(Failure::Usage(
             "--shadows works with --reference alone; grids are drawn without shadows".into(),
@@ -181,7 +192,7 @@ fn trace(args: &RenderArgs, view: &ViewArgs, scene: &Scene, cube: &Cube) -> Refe
         &light,
         DEFAULT_SAMPLES_PER_AXIS,
         &|rows| {
-            bar.inc(u64::from(rows));
+            bar.set_position(u64::from(rows));
         },
     );
     bar.finish_and_clear();
@@ -304,9 +315,12 @@ fn print(args: &RenderArgs, report: &Report) -> Result<(), Failure> {
 fn describe(measures: &ReferenceMeasures) -> String {
     let decibels =
         |value: Option<f64>| value.map_or("identical".into(), |db| format!("{db:.2} dB"));
+    let inside = match measures.inside_pixels {
+        0 => "of no pixel".into(),
+        _ => decibels(measures.psnr_inside),
+    };
     format!(
-        "psnr_inside {}, psnr {}, ssim {:.4}, rmse {:.2}, {} holes, {} see-through",
-        decibels(measures.psnr_inside),
+        "psnr_inside {inside}, psnr {}, ssim {:.4}, rmse {:.2}, {} holes, {} see-through",
         decibels(measures.frame.psnr),
         measures.frame.ssim,
         measures.frame.rmse,

@@ -30,7 +30,7 @@
 
 mod hierarchy;
 mod ray;
-mod spacing;
+pub(crate) mod spacing;
 mod surface;
 #[cfg(test)]
 mod tests;

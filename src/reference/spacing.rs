@@ -27,7 +27,7 @@ const LEAF_POINTS: usize = 8;
 
 /// Disc radii in the order of the points. A cloud without two distinct
 /// positions has no spacing: its radii are 0.
-pub(super) fn disc_radii(points: &[Vec3]) -> Vec<f32> {
+pub(crate) fn disc_radii(points: &[Vec3]) -> Vec<f32> {
     // Adding zero turns -0 into 0, so that equal positions have equal bits.
     let place = |point: &Vec3| *point + Vec3::ZERO;
     let mut distinct: Vec<Vec3> = points.iter().map(place).collect();

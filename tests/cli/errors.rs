@@ -288,3 +288,27 @@ fn limits_that_cannot_be_kept_name_the_input() {
         &["a.png", "16x16", "b.png", "16x17", "; compare"],
     );
 }
+
+#[test]
+fn inputs_are_not_replaced_and_links_stay_links() {
+    let folder = Folder::new();
+    is_wrong_usage(&folder, "bake cube.obj -o cube.obj");
+    is_wrong_usage(&folder, "render cube.obj -o cube.png.jpg");
+    folder.done("bake cube.obj -o cube.rho --level 1");
+    for options in ["--rho 2", "--level 1", "--up y", "--two-sided"] {
+        is_wrong_usage(&folder, &format!("render cube.rho -o out.png {options}"));
+    }
+    #[cfg(unix)]
+    {
+        std::os::unix::fs::symlink("cube.rho", folder.path("link.rho")).unwrap();
+        folder.done("bake cube.obj -o link.rho --level 2");
+        assert!(folder.path("link.rho").is_symlink());
+        let bytes = |name| std::fs::read(folder.path(name)).unwrap();
+        assert_eq!(bytes("link.rho"), bytes("cube.rho"));
+        fails(
+            &folder,
+            "bake cube.obj -o /dev/stdout",
+            &["no ordinary file"],
+        );
+    }
+}

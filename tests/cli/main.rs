@@ -3,6 +3,7 @@
 mod bake;
 mod compare;
 mod errors;
+mod quality;
 mod render;
 
 use std::path::{Path, PathBuf};

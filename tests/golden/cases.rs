@@ -84,7 +84,10 @@ pub fn light() -> Light {
 }
 
 pub fn quality(case: &Case) -> Quality {
-    Quality { splat: case.splat }
+    Quality {
+        splat: case.splat,
+        ..Quality::default()
+    }
 }
 
 const FULL: Length = Length::lit("2.6");

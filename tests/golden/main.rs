@@ -153,7 +153,7 @@ fn one_sided_surfaces_are_not_seen_from_behind() {
 
 /// The inside of a sphere is bright towards the light and dark away from it.
 #[test]
-#[ignore = "leaves beside the eye cover the whole picture: the core does not test them against it"]
+
 fn the_inside_of_a_sphere_has_many_shades() {
     let frame = draw_case(&INSIDE);
     assert!(frame.depth.iter().all(|&depth| depth != 0), "a hole");

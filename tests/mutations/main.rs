@@ -114,7 +114,7 @@ fn no_mutant_panics_or_draws_out_of_bounds() {
 }
 
 #[test]
-#[ignore = "extents of cells near the eye overflow in the core's traversal and splats"]
+
 fn no_mutant_panics_around_the_eye() {
     let tally = tally(RUNS / 4, &INSIDE);
     assert!(tally.with_pixels * 20 >= RUNS, "{tally:?}");

@@ -123,6 +123,7 @@ impl Buffers {
         };
         let quality = Quality {
             splat: random.pick(&SPLATS),
+            distortion: random.pick(&[SplatPx::ZERO, Quality::DISTORTION, SplatPx::MAX]),
         };
         let band = band(random);
         let pixels = band.pixels();

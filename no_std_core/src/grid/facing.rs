@@ -6,7 +6,7 @@
 //! where rounding or a cell's size leaves doubt, cells count as facing the
 //! eye.
 
-use crate::asset::node::{APERTURE_COSINE, APERTURE_SINE, Flags};
+use crate::asset::node::{APERTURE_ALL, APERTURE_COSINE, APERTURE_SINE, Flags};
 use crate::camera::Camera;
 use crate::normal::{COMPONENT_BITS, OPPOSITE, decode};
 use crate::numbers::{bit_length, shift_round};
@@ -41,6 +41,8 @@ pub(crate) enum Facing {
     Away,
     /// Some of it may.
     Maybe,
+    /// Everything in the cell does.
+    Toward,
 }
 
 /// The component of a view vector along a unit normal; positive where the
@@ -58,7 +60,8 @@ pub(crate) fn along(code: u16, view: [i32; 3]) -> i32 {
 /// For a normal n within the aperture t of the axis a, any point of the cell
 /// v + d with |d| <= radius, and c = a . v: n . (v + d) >= c cos t - sin t
 /// sqrt(v^2 - c^2) - radius. The cell faces away where that is positive.
-/// Squared, to need no root: (c cos t - radius)^2 > sin^2 t (v^2 - c^2).
+/// Squared, to need no root: (c cos t - radius)^2 > sin^2 t (v^2 - c^2). With
+/// -c for c it faces the eye.
 pub(crate) fn cone(flags: Flags, code: u16, view: [i32; 3], radius: i32) -> Facing {
     let aperture = usize::from(flags.aperture);
     let (Some(&sine), Some(&cosine)) = (APERTURE_SINE.get(aperture), APERTURE_COSINE.get(aperture))
@@ -66,7 +69,8 @@ pub(crate) fn cone(flags: Flags, code: u16, view: [i32; 3], radius: i32) -> Faci
         return Facing::Maybe;
     };
     let (sine, cosine) = (i64::from(sine), i64::from(cosine));
-    let along = i64::from(along(code, view)) - 4;
+    let signed = along(code, view);
+    let along = i64::from(signed.abs()) - 4;
     let margin = ((along * cosine) >> 15) - i64::from(radius) - 1;
     if margin <= 0 {
         return Facing::Maybe;
@@ -75,10 +79,12 @@ pub(crate) fn cone(flags: Flags, code: u16, view: [i32; 3], radius: i32) -> Faci
     let across = x * x + y * y + z * z - along * along;
     // 16-bit sine squared x 33 bits: below 2^64 / 2.
     let sine_square = ((sine * sine) >> 15) + 1;
-    if margin * margin > (sine_square * across) >> 15 {
+    if margin * margin <= (sine_square * across) >> 15 {
+        Facing::Maybe
+    } else if signed > 0 {
         Facing::Away
     } else {
-        Facing::Maybe
+        Facing::Toward
     }
 }
 
@@ -99,12 +105,14 @@ pub(crate) fn horizon(view: [i32; 3], radius: i32) -> i32 {
     radius + length(view) * 3 / 64
 }
 
-/// The attribute of a sample that is drawn from both sides: turned to the
-/// opposite normal where its own faces away by more than some 20 degrees.
-/// Less than that is a shading normal bent beyond a face that is seen.
+/// The attribute of a sample that is drawn though its own normal faces away.
+///
+/// Where the cell holds faces of every direction, it shows its other side:
+/// the opposite normal. Elsewhere its normal is only bent beyond a face that
+/// is seen, and stays.
 #[inline(always)]
-pub(crate) fn turned(attribute: u16, view: [i32; 3]) -> u16 {
-    if along(attribute, view) > length(view) * 11 / 32 {
+pub(crate) fn turned(attribute: u16, flags: Flags) -> u16 {
+    if flags.aperture == APERTURE_ALL {
         attribute ^ OPPOSITE
     } else {
         attribute

@@ -3,7 +3,7 @@
 //! Source: Duguet and Drettakis 2003, 5.2 (bounds of a projected cell).
 
 use super::tables::Point;
-use crate::numbers::SCREEN_BITS;
+use crate::numbers::{SCREEN_BITS, shift_round};
 use crate::projection::Projection;
 use crate::reciprocal::{Reciprocal, reciprocal};
 use crate::splat::Extent;
@@ -23,6 +23,13 @@ pub(super) struct Place {
 }
 
 impl Place {
+    /// A place to fill arrays with.
+    pub const ORIGIN: Self = Self {
+        x: 0,
+        y: 0,
+        depth: 1,
+    };
+
     /// Projects a point in front of the eye, given 1 / w.
     #[inline(always)]
     pub fn of(projection: &Projection, point: Point, inverse: Reciprocal) -> Self {
@@ -35,27 +42,115 @@ impl Place {
         }
     }
 
-    /// Whether a cell here lies wholly beside a band; a saturated half side
-    /// reaches anywhere.
-    pub fn is_outside(&self, extent: &Extent, band: Rect) -> bool {
+    /// Whether a cell of these half sides lies wholly beside a band; a
+    /// saturated half side reaches anywhere.
+    pub fn is_outside(&self, half: [i32; 2], band: Rect) -> bool {
         let pixel = |bound: u16| i32::from(bound) << SCREEN_BITS;
         let is_beside = |at: i32, half: i32, low: u16, high: u16| {
             // 1/16 px and 2^-16 of the half side: more than rounding.
             let reach = half + (half >> 16) + (1 << (SCREEN_BITS - 4));
             half < HALF_LIMIT && (at + reach < pixel(low) || at - reach > pixel(high))
         };
-        let [half_x, half_y] = extent.half;
+        let [half_x, half_y] = half;
         is_beside(self.x, half_x, band.left, band.right)
             || is_beside(self.y, half_y, band.top, band.bottom)
     }
 }
 
-/// The extent of a cell whose centre has a given 1 / w and whose nearest
-/// corner has the w `nearest`.
+/// A cell that is not near, projected.
+pub(super) struct Projected {
+    pub place: Place,
+    /// Half the sides of its bounding rectangle, Q20.12 pixels.
+    pub half: [i32; 2],
+    pub inverse: Reciprocal,
+    /// 1 / w of its nearest corner.
+    pub nearest: Reciprocal,
+    /// Along its subcells' half edges.
+    pub slopes: Slopes,
+}
+
+impl Projected {
+    /// Projects a cell whose nearest corner has the w `nearest` and whose
+    /// subcells have the given half edges.
+    #[inline(never)]
+    pub fn new(
+        projection: &Projection,
+        centre: Point,
+        nearest: i32,
+        half_edges: &[Point; 3],
+        rho: u8,
+    ) -> Self {
+        let inverse = reciprocal(centre.w as u32);
+        let nearest = reciprocal(nearest as u32);
+        let slopes = Slopes::at(centre, inverse, half_edges);
+        Self {
+            place: Place::of(projection, centre, inverse),
+            // A cell is rho subcells wide.
+            half: slopes.half(projection, nearest, i32::from(rho)),
+            inverse,
+            nearest,
+            slopes,
+        }
+    }
+}
+
+/// How the screen moves along a cell's half edges, at its centre.
 ///
 /// For a corner c + d: (X + dX) / (w + dw) - X / w = (dX - X / w dw) / (w +
-/// dw), so half the rectangle's sides are at most the sum over the half edges
-/// of |dX - X / w dw|, over the nearest w.
+/// dw). The numerator is linear in d.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Slopes {
+    /// dX - X / w dw and dY - Y / w dw of each half edge, block units.
+    pub along: [[i32; 2]; 3],
+    /// dw / w of each half edge, Q2.30. It saturates at one, which only a
+    /// leaf that reaches behind the eye exceeds: no rectangle bounds that one.
+    pub ratios: [i32; 3],
+}
+
+impl Slopes {
+    /// The slopes at a centre with a given 1 / w.
+    #[inline(always)]
+    pub fn at(centre: Point, inverse: Reciprocal, half_edges: &[Point; 3]) -> Self {
+        let [first, second, third] = half_edges;
+        let ratio = |edge: &Point| inverse.times(edge.w, 30);
+        let ratios = [ratio(first), ratio(second), ratio(third)];
+        let along = |edge: &Point, ratio: i32| {
+            let shear = |value: i32| ((i64::from(value) * i64::from(ratio)) >> 30) as i32;
+            [edge.x - shear(centre.x), edge.y - shear(centre.y)]
+        };
+        Self {
+            along: [
+                along(first, ratios[0]),
+                along(second, ratios[1]),
+                along(third, ratios[2]),
+            ],
+            ratios,
+        }
+    }
+
+    /// Half the sides of the cell's bounding rectangle, Q20.12 pixels: the
+    /// sums of the slopes' magnitudes over the nearest w, times `scale`.
+    #[inline(always)]
+    pub fn half(&self, projection: &Projection, nearest: Reciprocal, scale: i32) -> [i32; 2] {
+        let bits = projection.screen_scale + SCREEN_BITS;
+        let [first, second, third] = self.along;
+        let half = |first: i32, second: i32, third: i32| {
+            let sum = first
+                .saturating_abs()
+                .saturating_add(second.saturating_abs());
+            let sum = sum
+                .saturating_add(third.saturating_abs())
+                .saturating_mul(scale);
+            (nearest.times(sum, bits) + 1).min(HALF_LIMIT)
+        };
+        [
+            half(first[0], second[0], third[0]),
+            half(first[1], second[1], third[1]),
+        ]
+    }
+}
+
+/// The extent of a cell whose nearest corner has the w `nearest`.
 pub(super) fn extent(
     projection: &Projection,
     centre: Point,
@@ -63,25 +158,60 @@ pub(super) fn extent(
     half_edges: &[Point; 3],
     nearest: i32,
 ) -> Extent {
-    let nearest_inverse = reciprocal(nearest as u32);
-    let (mut sum_x, mut sum_y) = (0i32, 0i32);
-    for edge in half_edges {
-        // dw / w, Q2.30; saturates at one, which only a leaf that reaches
-        // behind the eye exceeds: no rectangle bounds that one.
-        let ratio = i64::from(inverse.times(edge.w, 30));
-        let shear = |value: i32| ((i64::from(value) * ratio) >> 30) as i32;
-        sum_x = sum_x.saturating_add((edge.x - shear(centre.x)).saturating_abs());
-        sum_y = sum_y.saturating_add((edge.y - shear(centre.y)).saturating_abs());
+    let slopes = Slopes::at(centre, inverse, half_edges);
+    Extent {
+        half: slopes.half(projection, reciprocal(nearest as u32), 1),
+        rim_drop: rim_drop(projection, centre.w, inverse, half_edges),
     }
-    let scale = projection.screen_scale + SCREEN_BITS;
-    // The rim lies a cell's diagonal deeper, at least one step.
+}
+
+/// How much deeper a rim lies: a cell's diagonal, at least one step.
+pub(super) fn rim_drop(
+    projection: &Projection,
+    w: i32,
+    inverse: Reciprocal,
+    half_edges: &[Point; 3],
+) -> u16 {
     let diagonal: i32 = half_edges.iter().map(|edge| edge.w.abs()).sum();
-    let rim = reciprocal(centre.w.saturating_add(2 * diagonal) as u32);
+    let rim = reciprocal(w.saturating_add(2 * diagonal) as u32);
     let drop = projection
         .depth(inverse)
         .saturating_sub(projection.depth(rim));
-    Extent {
-        half: [sum_x, sum_y].map(|sum| (nearest_inverse.times(sum, scale) + 1).min(HALF_LIMIT)),
-        rim_drop: drop.saturating_add(1),
-    }
+    drop.saturating_add(1)
+}
+
+/// A cell whose nearest corner is nearer than this, given the near plane's w
+/// and its centre's, is *near*: its rectangle, taken over the nearest w, would
+/// be more than twice too large and say little of where the cell is.
+#[inline(always)]
+pub(super) fn near_limit(near: i32, w: i32) -> i32 {
+    near.max(w / 2)
+}
+
+/// Whether a near cell lies wholly beside the picture: on the far side of one
+/// of its four planes through the eye.
+///
+/// The picture and not the band, because no rectangle bounds such a cell.
+/// With b for half the picture in pixels, a plane is X 2^screen_scale = b w,
+/// linear in the point, so the cell's reach across it is the sum over the half
+/// edges.
+pub(super) fn is_beside(projection: &Projection, centre: Point, half_edges: &[Point; 3]) -> bool {
+    let scale = projection.screen_scale + SCREEN_BITS;
+    let is_beyond = |row: fn(Point) -> i32, side: i64, bound: i64| {
+        // Positive beyond the plane. Saturated values keep their sign, which
+        // is all that counts.
+        let across = |point: Point| {
+            let screen = shift_round(i128::from(row(point)), -scale);
+            i128::from(side) * i128::from(screen) - i128::from(bound) * i128::from(point.w)
+        };
+        let reach: i128 = half_edges.iter().map(|&edge| across(edge).abs()).sum();
+        // Eight block units for the rounded centre and edges.
+        let slack = (i128::from(bound) + (1 << scale.clamp(0, 62))) * 8;
+        across(centre) > reach + slack
+    };
+    let [half_width, half_height] = projection.middle.map(|middle| i64::from(middle.to_bits()));
+    [-1, 1].iter().any(|&side| {
+        is_beyond(|point| point.x, side, half_width)
+            || is_beyond(|point| point.y, side, half_height)
+    })
 }

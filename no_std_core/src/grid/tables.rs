@@ -71,6 +71,17 @@ pub(crate) struct LevelTable<const CELLS: usize> {
     pub eye_radius: i32,
 }
 
+/// How large the cells of a depth are.
+#[derive(Clone, Copy)]
+pub(crate) struct Extents<'a> {
+    /// See [`LevelTable::half_edges`].
+    pub half_edges: &'a [Point; 3],
+    /// See [`LevelTable::half_w`].
+    pub half_w: i32,
+    /// See [`LevelTable::eye_radius`].
+    pub eye_radius: i32,
+}
+
 /// The tables of every depth that a frame may reach, and the root's centre.
 pub(crate) struct Tables<const CELLS: usize, const LEVELS: usize> {
     /// Entry n holds displacements to cells of depth n + 1 and extents of
@@ -101,11 +112,21 @@ impl<const CELLS: usize, const LEVELS: usize> Tables<CELLS, LEVELS> {
         tables
     }
 
-    /// The table whose extents are those of cells at a depth.
+    /// The table of displacements from cells of a depth to their subcells; its
+    /// extents are the subcells'.
     #[inline(always)]
     pub fn below(&self, depth: u8) -> &LevelTable<CELLS> {
         let last = LEVELS - 1;
         &self.levels[usize::from(depth).min(last)]
+    }
+
+    /// Extents of cells of a depth.
+    #[inline(always)]
+    pub fn extents(&self, depth: u8) -> Extents<'_> {
+        match depth.checked_sub(1) {
+            None => self.root.extents(),
+            Some(above) => self.below(above).extents(),
+        }
     }
 }
 
@@ -118,6 +139,14 @@ impl<const CELLS: usize> LevelTable<CELLS> {
         eye_radius: 0,
     };
 
+    fn extents(&self) -> Extents<'_> {
+        Extents {
+            half_edges: &self.half_edges,
+            half_w: self.half_w,
+            eye_radius: self.eye_radius,
+        }
+    }
+
     /// Extents of cells of a depth, of which `cells_per_axis` span the cube.
     fn set_extents(
         &mut self,
@@ -126,6 +155,7 @@ impl<const CELLS: usize> LevelTable<CELLS> {
         eye_unit: i32,
         depth: i32,
     ) {
+        let cells_per_axis = cells_per_axis.max(1);
         for (axis, edge) in self.half_edges.iter_mut().enumerate() {
             *edge = point(projection, |form| {
                 form.axes.get(axis).copied().unwrap_or(0) / cells_per_axis
@@ -135,7 +165,7 @@ impl<const CELLS: usize> LevelTable<CELLS> {
         self.half_w = self.half_edges.iter().map(|edge| edge.w.abs() + 1).sum();
         // sqrt(3) < 7/4; the centre is a sum of depth + 1 rounded vectors,
         // each within sqrt(3) / 2 units.
-        self.eye_radius = (eye_unit * 7 / 4) / cells_per_axis as i32 + 2 + depth;
+        self.eye_radius = (eye_unit * 7 / 4) / (cells_per_axis as i32).max(1) + 2 + depth;
     }
 
     fn set_displacements(
@@ -145,6 +175,7 @@ impl<const CELLS: usize> LevelTable<CELLS> {
         projection: &Projection,
         eye_unit: i32,
     ) {
+        let cells_per_axis = cells_per_axis.max(1);
         let edges = projection
             .forms
             .map(|form| form.axes.map(|axis| axis / cells_per_axis));

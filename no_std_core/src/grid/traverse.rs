@@ -4,16 +4,18 @@
 //! Source: Duguet and Drettakis 2003, 5.1 (centres by additions) and 5.2
 //! (multi-level stop, bounds of a projected cell).
 
-use super::facing::{EyeSpace, Facing, cone, turned};
-use super::footprint::{Place, extent};
-use super::tables::{LevelTable, Point, Tables};
+use super::facing::{EyeSpace, Facing, cone};
+use super::footprint::{Projected, is_beside, near_limit, rim_drop};
+use super::leaves::Seen;
+use super::tables::{Point, Tables};
 use crate::asset::Grid;
-use crate::asset::node::{Flags, halves, occupied};
+use crate::asset::node::{APERTURE_ALL, Flags, halves, occupied};
 use crate::camera::Camera;
 use crate::draw::Quality;
+use crate::numbers::{SCREEN_BITS, SplatPx};
 use crate::projection::Projection;
-use crate::reciprocal::reciprocal;
 use crate::shade::Shader;
+use crate::splat::Extent;
 use crate::stats::Stats;
 use crate::target::Target;
 
@@ -22,9 +24,11 @@ pub(super) struct Frame<'a, const CELLS: usize, const LEVELS: usize> {
     pub grid: &'a Grid<'a>,
     pub projection: &'a Projection,
     pub shader: &'a Shader<'a>,
-    pub tables: Tables<CELLS, LEVELS>,
+    pub tables: &'a Tables<CELLS, LEVELS>,
     /// Longest side of a cell's rectangle that is one splat, Q20.12 pixels.
     pub splat_side: i32,
+    /// Largest error of an affine block, Q20.12 pixels.
+    pub distortion: i32,
 }
 
 /// What a frame's traversal writes.
@@ -46,6 +50,11 @@ pub(super) struct Cell {
     pub view: [i32; 3],
 }
 
+/// Q16.16 to Q20.12 pixels; the largest values saturate.
+fn screen(length: SplatPx) -> i32 {
+    (length.to_bits() >> (16 - SCREEN_BITS)) as i32
+}
+
 /// Draws a grid; the target is already clear.
 pub(crate) fn traverse(
     grid: &Grid<'_>,
@@ -62,6 +71,7 @@ pub(crate) fn traverse(
     }
 }
 
+#[inline(never)]
 fn run<const RHO: u8, const CELLS: usize, const LEVELS: usize>(
     grid: &Grid<'_>,
     camera: &Camera,
@@ -83,8 +93,9 @@ fn run<const RHO: u8, const CELLS: usize, const LEVELS: usize>(
         grid,
         projection: &projection,
         shader,
-        tables,
-        splat_side: (quality.splat.to_bits() >> 4) as i32,
+        tables: &tables,
+        splat_side: screen(quality.splat),
+        distortion: screen(quality.distortion),
     };
     let mut output = Output {
         target,
@@ -108,7 +119,17 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
                 let record = next.nodes.get(..halves(RHO)).unwrap_or(&[]);
                 self.node::<RHO>(root, record, attribute, output);
             }
-            None => self.root_leaf(root, attribute, output),
+            None => {
+                let half_edges = self.tables.extents(0).half_edges;
+                let radius = self.tables.extents(0).eye_radius;
+                // Nothing tells what else it holds.
+                let flags = Flags {
+                    aperture: APERTURE_ALL,
+                    two_sided: true,
+                };
+                let attribute = Seen::new(root.view, radius, flags, Facing::Maybe).own(attribute);
+                self.near_leaf(root.centre, half_edges, attribute, output);
+            }
         }
     }
 
@@ -123,46 +144,73 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
         output.stats.nodes_visited += 1;
         let Some(&last) = record.last() else { return };
         let flags = Flags::from_last(RHO, last);
-        let (half_edges, half_w, radius) = self.extents(cell.depth);
-        if cone(flags, attribute, cell.view, radius) == Facing::Away {
+        let extents = self.tables.extents(cell.depth);
+        let facing = cone(flags, attribute, cell.view, extents.eye_radius);
+        if facing == Facing::Away {
             output.stats.nodes_back_facing += 1;
             return;
         }
-        if cell.centre.w + half_w < self.projection.near {
-            output.stats.nodes_outside += 1;
+        let seen = Seen::new(cell.view, extents.eye_radius, flags, facing);
+        let (near, w) = (self.projection.near, cell.centre.w);
+        let nearest = w - extents.half_w;
+        if nearest < near_limit(near, w) {
+            let is_behind = w + extents.half_w < near;
+            if is_behind || is_beside(self.projection, cell.centre, extents.half_edges) {
+                output.stats.nodes_outside += 1;
+            } else {
+                self.descend::<RHO>(cell, record, seen, None, output);
+            }
             return;
         }
-        let nearest = cell.centre.w - half_w;
-        if nearest >= self.projection.near {
-            let inverse = reciprocal(cell.centre.w as u32);
-            let place = Place::of(self.projection, cell.centre, inverse);
-            let extent = extent(self.projection, cell.centre, inverse, &half_edges, nearest);
-            if place.is_outside(&extent, output.target.band) {
-                output.stats.nodes_outside += 1;
-                return;
-            }
-            if 2 * extent.half[0].max(extent.half[1]) <= self.splat_side {
-                self.splat(place, &extent, turned(attribute, cell.view), output);
-                return;
-            }
-        }
-        let table = self.tables.below(cell.depth);
-        let leaves = cell.depth + 1 == self.grid.depth();
-        if leaves {
-            self.leaves(cell, record, flags, table, output);
+        let half_edges = &self.tables.below(cell.depth).half_edges;
+        let projected = Projected::new(self.projection, cell.centre, nearest, half_edges, RHO);
+        if projected
+            .place
+            .is_outside(projected.half, output.target.band)
+        {
+            output.stats.nodes_outside += 1;
+        } else if 2 * projected.half[0].max(projected.half[1]) <= self.splat_side {
+            self.node_splat(cell, &projected, seen.own(attribute), output);
         } else {
-            self.children::<RHO>(cell, record, table, output);
+            self.descend::<RHO>(cell, record, seen, Some(&projected), output);
         }
     }
 
-    /// Visits the children of a cell, all of which are intermediate.
-    fn children<const RHO: u8>(
+    fn descend<const RHO: u8>(
         &self,
         cell: &Cell,
         record: &[u16],
-        table: &LevelTable<CELLS>,
+        seen: Seen,
+        projected: Option<&Projected>,
         output: &mut Output<'_, '_>,
     ) {
+        if cell.depth + 1 == self.grid.depth() {
+            self.leaves::<RHO>(cell, record, seen, projected, output);
+        } else {
+            self.children::<RHO>(cell, record, output);
+        }
+    }
+
+    /// Draws an intermediate cell as one splat.
+    fn node_splat(
+        &self,
+        cell: &Cell,
+        projected: &Projected,
+        attribute: u16,
+        output: &mut Output<'_, '_>,
+    ) {
+        let half_edges = self.tables.extents(cell.depth).half_edges;
+        let w = cell.centre.w;
+        let extent = Extent {
+            half: projected.half,
+            rim_drop: rim_drop(self.projection, w, projected.inverse, half_edges),
+        };
+        self.splat(projected.place, &extent, attribute, output);
+    }
+
+    /// Visits the children of a cell, all of which are intermediate.
+    fn children<const RHO: u8>(&self, cell: &Cell, record: &[u16], output: &mut Output<'_, '_>) {
+        let table = self.tables.below(cell.depth);
         let below = usize::from(cell.depth) + 1;
         let levels = self.grid.levels();
         let (Some(level), Some(next)) = (levels.get(below), levels.get(below + 1)) else {
@@ -203,22 +251,6 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
                     self.node::<RHO>(&child, record, attribute, output);
                 }
                 bits >>= 1;
-            }
-        }
-    }
-
-    /// Extents of cells of a depth: half edges, half extent in w, radius.
-    #[inline(always)]
-    pub(super) fn extents(&self, depth: u8) -> ([Point; 3], i32, i32) {
-        match depth.checked_sub(1) {
-            None => (
-                self.tables.root.half_edges,
-                self.tables.root.half_w,
-                self.tables.root.eye_radius,
-            ),
-            Some(above) => {
-                let table = self.tables.below(above);
-                (table.half_edges, table.half_w, table.eye_radius)
             }
         }
     }

@@ -106,7 +106,8 @@ pub(crate) struct Exact {
     centre: Vector,
     axes: [Vector; 3],
     pub eye: Vector,
-    middle: [f64; 2],
+    /// Half the picture, pixels.
+    pub middle: [f64; 2],
 }
 
 impl Exact {

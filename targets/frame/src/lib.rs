@@ -8,8 +8,8 @@
 //! word  0  magic "RHFR"            word  7  asset length, bytes
 //!       1  version                       8  light towards x, y, z
 //!       2  file length, bytes           11  ambient, diffuse
-//!       3  width | height << 16         13  splat
-//!       4  view count                   14  zero, zero
+//!       3  width | height << 16         13  splat, distortion
+//!       4  view count                   15  zero
 //!       5  first view, byte offset      16  views: 2 cameras each,
 //!       6  asset, byte offset               then the asset
 //! camera: eye x, y, z (2 words each, low first), right, up, forward x, y, z,

@@ -69,6 +69,7 @@ impl<'a> Frame<'a> {
         };
         let quality = Quality {
             splat: SplatPx::from_bits(header.word()),
+            distortion: SplatPx::from_bits(header.word()),
         };
         let settings = Settings {
             width: (size & 0xffff) as u16,

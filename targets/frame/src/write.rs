@@ -36,7 +36,7 @@ pub fn write(
         light.ambient.to_bits(),
         light.diffuse.to_bits(),
         settings.quality.splat.to_bits(),
-        0,
+        settings.quality.distortion.to_bits(),
         0,
     ];
     for word in header {

@@ -91,6 +91,7 @@ fn draw_unknown(target: Option<Target<'_>>) {
     };
     let quality = Quality {
         splat: black_box(SplatPx::ZERO),
+        distortion: black_box(SplatPx::ZERO),
     };
     black_box(grid.radius());
     black_box(shades_len(grid.materials().len()));

@@ -6,9 +6,7 @@ use std::process::ExitCode;
 
 use clap::error::ErrorKind;
 use clap::{CommandFactory, Parser};
-use rhogrid::cli::{Failure, QualityArgs, core_light, float_light};
-use rhogrid_core::draw::Quality;
-use rhogrid_core::numbers::SplatPx;
+use rhogrid::cli::{Failure, QualityArgs, core_light, core_quality, float_light};
 use rhogrid_targets::job::{Job, run};
 use rhogrid_targets::machine::{self, Machine};
 use rhogrid_targets::views::{self, View};
@@ -83,9 +81,7 @@ impl Arguments {
             file: self.file,
             views,
             light: core_light(&self.quality),
-            quality: Quality {
-                splat: SplatPx::saturating_from_num(self.quality.splat),
-            },
+            quality: core_quality(&self.quality),
             json: self.json,
         }
     }

@@ -13,6 +13,7 @@ use crate::camera::Camera;
 use crate::normal::decode;
 use crate::numbers::Length;
 use crate::projection::DepthRange;
+use crate::testing::model::Cell;
 use crate::testing::view::eye_unit;
 use crate::testing::{Exact, Model, dot};
 
@@ -157,6 +158,10 @@ impl<'a> View<'a> {
             }
             let mut sure = point[2] > self.near + w_error;
             let edges = self.edges(depth);
+            if self.left_out(depth, cell, units, -1.0) {
+                continue;
+            }
+            sure &= !self.left_out(depth, cell, units, 1.0);
             // The block decides whose nearest corner counts.
             let mut base = (point, None);
             if depth > 0 {
@@ -165,10 +170,11 @@ impl<'a> View<'a> {
                 let block_point = self.exact.forms(block_centre);
                 let nearest = block_point[2] - self.reach(depth - 1);
                 let doubt = (units + 6.0) * self.units[1];
-                if (nearest - self.near).abs() <= doubt {
+                let limit = self.near.max(block_point[2] / 2.0);
+                if (nearest - limit).abs() <= doubt {
                     return None;
                 }
-                if nearest > self.near {
+                if nearest > limit {
                     base = (block_point, Some(nearest));
                 }
                 if !block.flags.two_sided {
@@ -196,6 +202,31 @@ impl<'a> View<'a> {
             });
         }
         Some(leaves)
+    }
+
+    /// Whether a cell, or one above it, is near and lies beside the picture: surely with a doubt of -1, maybe with 1.
+    fn left_out(&self, depth: usize, cell: &Cell, units: f64, doubt: f64) -> bool {
+        let point = self.exact.forms(self.model.centre(depth, cell));
+        let nearest = point[2] - self.reach(depth);
+        let limit = self.near.max(point[2] / 2.0) + doubt * (units + 6.0) * self.units[1];
+        nearest <= limit && self.is_beside(point, &self.edges(depth), units, doubt)
+            || depth.checked_sub(1).is_some_and(|above| {
+                let parent = &self.model.levels[above][cell.parent];
+                self.left_out(above, parent, units, doubt)
+            })
+    }
+
+    /// Whether a cell lies beyond one of the picture's four sides.
+    fn is_beside(&self, point: [f64; 3], edges: &[[f64; 3]; 3], units: f64, doubt: f64) -> bool {
+        let slack = doubt * (units + 16.0) * (self.units[0] + self.units[1]);
+        [0, 1].into_iter().any(|row| {
+            let bound = self.exact.middle[row];
+            [-1.0, 1.0].into_iter().any(|side| {
+                let across = |point: [f64; 3]| side * point[row] - bound * point[2];
+                let reach: f64 = edges.iter().map(|&edge| across(edge).abs()).sum();
+                across(point) > reach - slack * (1.0 + bound)
+            })
+        })
     }
 
     /// Half edges of cells of a depth.
