@@ -90,6 +90,10 @@ pub(crate) fn draw(target: &mut Target<'_>, stats: &mut Stats, splat: &Splat, ex
     if left >= right || top >= bottom {
         return;
     }
+    let home = [splat.x >> SCREEN_BITS, splat.y >> SCREEN_BITS];
+    if right - left == 1 && bottom - top == 1 && home == [left, top] {
+        return draw_point(target, stats, home, splat.depth, || splat.colour);
+    }
     // The core: centres within half the half extent.
     let (core_left, core_right) = span(splat.x, half_x / 2, band.left, band.right);
     let (core_top, core_bottom) = span(splat.y, half_y / 2, band.top, band.bottom);
