@@ -59,7 +59,8 @@ struct Report {
     output: PathBuf,
     width: u16,
     height: u16,
-    yaw: f64,
+    /// Null where the eye was given.
+    yaw: Option<f64>,
     frame_hash: String,
     nodes_visited: u32,
     nodes_back_facing: u32,
@@ -70,6 +71,16 @@ struct Report {
     frames: u32,
     #[serde(flatten)]
     measures: Option<ReferenceMeasures>,
+}
+
+/// What the reference drew.
+#[derive(Debug, Serialize)]
+struct ReferenceReport {
+    output: PathBuf,
+    width: u32,
+    height: u32,
+    /// Null where the eye was given.
+    yaw: Option<f64>,
 }
 
 /// Draws and writes one picture or an orbit of them.
@@ -168,10 +179,12 @@ fn draw_reference(
     let reference = trace(args, &view, scene, cube);
     reference.picture().save_png(&output)?;
     if args.json {
-        let size = serde_json::json!({
-            "output": output, "width": reference.width, "height": reference.height,
+        return super::print_json(&ReferenceReport {
+            output,
+            width: reference.width,
+            height: reference.height,
+            yaw: args.view.eye.is_none().then_some(view.yaw),
         });
-        return super::print_json(&size);
     }
     super::say(format_args!(
         "{}: reference, {}x{}",
@@ -233,7 +246,13 @@ fn draw_grid(
         .map_err(|_| Failure::failed("sizes differ", "report this"))?;
     print(
         args,
-        &Report::new(output, view.yaw, &frame, args.frames, measures),
+        &Report::new(
+            output,
+            args.view.eye.is_none().then_some(view.yaw),
+            &frame,
+            args.frames,
+            measures,
+        ),
     )
 }
 
@@ -260,7 +279,7 @@ fn depths(frame: &Frame, camera: &Camera, asset: &AssetFile, splat: f64) -> (Vec
 impl Report {
     fn new(
         output: PathBuf,
-        yaw: f64,
+        yaw: Option<f64>,
         frame: &Frame,
         frames: u32,
         measures: Option<ReferenceMeasures>,
