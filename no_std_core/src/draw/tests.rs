@@ -21,6 +21,7 @@ const AMBIENT: Light = Light {
     diffuse: Weight::ZERO,
 };
 
+/// Every leaf projected exactly.
 fn quality(splat: f64) -> Quality {
     Quality {
         splat: SplatPx::from_num(splat),
@@ -28,11 +29,19 @@ fn quality(splat: f64) -> Quality {
     }
 }
 
+/// Every leaf drawn, blocks affine up to an error.
+fn affine(distortion: f64) -> Quality {
+    Quality {
+        splat: SplatPx::ZERO,
+        distortion: SplatPx::from_num(distortion),
+    }
+}
+
 fn frame_of(
     grid: &Grid<'_>,
     camera: &Camera,
     light: &Light,
-    splat: f64,
+    quality: &Quality,
     band: Rect,
     shades: &mut [u16],
 ) -> Frame {
@@ -40,7 +49,7 @@ fn frame_of(
     let mut colour = std::vec![0xdead; band.pixels()];
     let mut depth = std::vec![0xbeef; band.pixels()];
     let mut target = Target::band(band, &mut colour, &mut depth).expect("buffers fit");
-    let stats = draw(grid, camera, light, &quality(splat), shades, &mut target);
+    let stats = draw(grid, camera, light, quality, shades, &mut target);
     assert_eq!(target.band, band);
     Frame {
         colour,
@@ -59,11 +68,15 @@ fn whole(camera: &Camera) -> Rect {
 }
 
 fn frame(model: &Model, camera: &Camera, splat: f64) -> Frame {
+    frame_with(model, camera, &quality(splat))
+}
+
+fn frame_with(model: &Model, camera: &Camera, quality: &Quality) -> Frame {
     let bytes = aligned(&model.file().bytes());
     let grid = Grid::open(&bytes).expect("models are valid");
     let mut shades = std::vec![0; shades_len(model.materials.len())];
     let band = whole(camera);
-    frame_of(&grid, camera, &AMBIENT, splat, band, &mut shades)
+    frame_of(&grid, camera, &AMBIENT, quality, band, &mut shades)
 }
 
 /// A random small grid with painted cells; some of its blocks two-sided.
@@ -95,7 +108,7 @@ fn pictures_are_those_of_the_float_twin() {
         let model = model(&mut rng, leaves);
         let camera = near_camera(&mut rng, 200.0, 48.0);
         let frame = frame(&model, &camera, 0.0);
-        match twin::compare(&model, &camera, &frame.colour, &frame.depth) {
+        match twin::compare(&model, &camera, 0.0, &frame.colour, &frame.depth) {
             None => doubtful += 1,
             Some(Ok(verdict)) => {
                 // From inside, many cells share the ends of the depth range;
@@ -123,6 +136,29 @@ fn pictures_are_those_of_the_float_twin() {
 }
 
 #[test]
+fn affine_blocks_keep_their_bounds() {
+    let mut rng = Rng::with_seed(69);
+    let mut moved = 0;
+    for case in 0..2000 {
+        let leaves = magnitude(&mut rng, 1.0, 200.0);
+        let model = model(&mut rng, leaves);
+        let camera = near_camera(&mut rng, 200.0, 48.0);
+        let distortion = magnitude(&mut rng, 0.01, 8.0);
+        let frame = frame_with(&model, &camera, &affine(distortion));
+        moved += usize::from(frame.depth != frame_with(&model, &camera, &quality(0.0)).depth);
+        let verdict = twin::compare(&model, &camera, distortion, &frame.colour, &frame.depth);
+        if let Some(Err(reason)) = verdict {
+            panic!(
+                "case {case}, distortion {distortion}: {reason}\nrho {}, depth {}\n{camera:?}",
+                model.rho,
+                model.depth()
+            );
+        }
+    }
+    assert!(moved > 200, "only {moved} pictures had anything to bound");
+}
+
+#[test]
 fn bands_give_the_pixels_of_the_whole() {
     let mut rng = Rng::with_seed(62);
     for case in 0..900 {
@@ -132,7 +168,14 @@ fn bands_give_the_pixels_of_the_whole() {
         let splat = [0.0, 1.0, 4.0][case % 3];
         let bytes = aligned(&model.file().bytes());
         let grid = Grid::open(&bytes).expect("models are valid");
-        let all = frame_of(&grid, &camera, &AMBIENT, splat, whole(&camera), &mut []);
+        let all = frame_of(
+            &grid,
+            &camera,
+            &AMBIENT,
+            &quality(splat),
+            whole(&camera),
+            &mut [],
+        );
         let mut cuts = |size: u16| {
             let mut cuts = std::vec![0, size];
             cuts.extend((0..rng.u8(..3)).map(|_| rng.u16(..size)));
@@ -149,7 +192,7 @@ fn bands_give_the_pixels_of_the_whole() {
                     right: *right,
                     bottom: *bottom,
                 };
-                let part = frame_of(&grid, &camera, &AMBIENT, splat, band, &mut []);
+                let part = frame_of(&grid, &camera, &AMBIENT, &quality(splat), band, &mut []);
                 for (own, pixel) in (0..band.pixels()).map(|own| {
                     let row = usize::from(band.top) + own / band.width();
                     let column = usize::from(band.left) + own % band.width();
@@ -182,7 +225,14 @@ fn shading_without_memory_gives_the_same_bytes() {
         let length = shades_len(model.materials.len());
         let draw = |length: usize| {
             let mut shades = std::vec![0x5555; length];
-            frame_of(&grid, &camera, &light, 1.0, whole(&camera), &mut shades)
+            frame_of(
+                &grid,
+                &camera,
+                &light,
+                &quality(1.0),
+                whole(&camera),
+                &mut shades,
+            )
         };
         let want = draw(length);
         for length in [0, length - 1, length + 7] {

@@ -65,6 +65,8 @@ struct View<'a> {
     /// Where depth is 65535 and 1.
     range: [f64; 2],
     eye_unit: f64,
+    /// Largest error of an affine block, pixels; none is affine at zero.
+    distortion: f64,
 }
 
 /// Compares a picture with its twin. `None` where a whole block's treatment
@@ -72,10 +74,11 @@ struct View<'a> {
 pub(super) fn compare(
     model: &Model,
     camera: &Camera,
+    distortion: f64,
     colour: &[u16],
     depth: &[u16],
 ) -> Option<Result<Verdict, std::string::String>> {
-    let view = View::new(model, camera);
+    let view = View::new(model, camera, distortion);
     let leaves = view.leaves()?;
     let width = usize::from(camera.width);
     let mut least = std::vec![0f64; depth.len()];
@@ -121,7 +124,7 @@ pub(super) fn compare(
 }
 
 impl<'a> View<'a> {
-    fn new(model: &'a Model, camera: &Camera) -> Self {
+    fn new(model: &'a Model, camera: &Camera, distortion: f64) -> Self {
         let exact = Exact::new(camera);
         let centre = exact.forms([0.0; 3]);
         let edges = exact.half_edges(1.0);
@@ -139,6 +142,7 @@ impl<'a> View<'a> {
             near: camera.near.max(Length::DELTA).to_num(),
             range: [range.near.to_num(), range.far.to_num()],
             eye_unit: eye_unit(camera),
+            distortion,
             exact,
         }
     }
@@ -187,10 +191,21 @@ impl<'a> View<'a> {
             }
             let (origin, nearest) = base;
             let nearest = nearest.unwrap_or((point[2] - self.reach(depth)).max(self.near));
-            let core = self.depth(point[2], units);
+            let mut core = self.depth(point[2], units);
+            let mut place = self.place(point, units);
+            if base.1.is_some() && self.distortion > 0.0 {
+                // The bounds of `grid/leaves.rs`.
+                let rounding = 1.5 * f64::from(self.model.rho);
+                for at in &mut place {
+                    at.error += self.distortion + (rounding + 2.0) * 2f64.powi(-12);
+                }
+                let ratio = self.reach(depth - 1) / origin[2];
+                core.error +=
+                    self.depth_scaled(origin[2]) * ratio * ratio / (1.0 - ratio) + rounding + 2.0;
+            }
             let drop = self.drop(origin[2], &edges, units);
             leaves.push(Leaf {
-                place: self.place(point, units),
+                place,
                 half: [0, 1].map(|row| self.half(row, origin, nearest, &edges, units)),
                 core,
                 rim: Near {
@@ -295,6 +310,12 @@ impl<'a> View<'a> {
                 + value * 2f64.powf(-18.8)
                 + 2f64.powi(-10),
         }
+    }
+
+    /// Depth without its offset: proportional to 1 / w.
+    fn depth_scaled(&self, w: f64) -> f64 {
+        let [near, far] = self.range;
+        65534.0 / w / (1.0 / near - 1.0 / far)
     }
 
     /// Depth of a w that errs by some units, by the bound of
