@@ -109,10 +109,10 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
             .sum();
         let ratio = ratio * i64::from(rho);
         let offset = i64::from(extent.half[0].max(extent.half[1])) * i64::from(rho - 1);
-        // Twice the ratio bounds |dw| / (w + dw) up to a half.
         let scaled = self.projection.depth_scaled(block.inverse);
         // A limited depth is no base for steps.
         let is_limited = block.place.depth == 1 || block.place.depth == u16::MAX;
+        // Twice the ratio bounds |dw| / (w + dw) up to a half.
         if ratio > 1 << 29
             || scaled > 1 << 31
             || is_limited

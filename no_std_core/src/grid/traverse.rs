@@ -120,15 +120,14 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
                 self.node::<RHO>(root, record, attribute, output);
             }
             None => {
-                let half_edges = self.tables.extents(0).half_edges;
-                let radius = self.tables.extents(0).eye_radius;
+                let extents = self.tables.extents(0);
                 // Nothing tells what else it holds.
                 let flags = Flags {
                     aperture: APERTURE_ALL,
                     two_sided: true,
                 };
-                let attribute = Seen::new(root.view, radius, flags, Facing::Maybe).own(attribute);
-                self.near_leaf(root.centre, half_edges, attribute, output);
+                let seen = Seen::new(root.view, extents.eye_radius, flags, Facing::Maybe);
+                self.near_leaf(root.centre, extents.half_edges, seen.own(attribute), output);
             }
         }
     }
