@@ -2,9 +2,13 @@
 
 use crate::asset::Grid;
 use crate::camera::Camera;
+use crate::canvas::Canvas;
 use crate::grid::traverse;
 use crate::normal::CODES;
 use crate::numbers::{SplatPx, Unit, Weight};
+use crate::plan::Plan;
+use crate::projection::Projection;
+use crate::resolve::resolve;
 use crate::shade::Shader;
 use crate::stats::Stats;
 use crate::target::Target;
@@ -24,17 +28,22 @@ pub struct Light {
 /// The knobs of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Quality {
-    /// A cell whose projected bounding rectangle has no side longer than
-    /// this is drawn as one splat.
+    /// Cells with an edge of at most so many pixels, at their distance, are
+    /// drawn as one sample each; the cell above decides for all its children.
     pub splat: SplatPx,
-    /// Leaves of a block are placed by additions in screen space where that
-    /// errs by at most so many pixels; zero projects each of them.
+    /// The last one or two levels are walked by additions in screen space
+    /// where that errs by at most so many pixels, and their cells are drawn as
+    /// points; at zero each cell is projected and drawn as a splat that covers
+    /// it.
     pub distortion: SplatPx,
+    /// Whether pixels that points have missed are closed: see
+    /// [`crate::target::Target`].
+    pub repair: bool,
 }
 
 impl Quality {
     /// The distortion that is allowed unless somebody says otherwise, pixels.
-    pub const DISTORTION: SplatPx = SplatPx::lit("0.125");
+    pub const DISTORTION: SplatPx = SplatPx::lit("0.25");
 }
 
 impl Default for Quality {
@@ -42,6 +51,7 @@ impl Default for Quality {
         Self {
             splat: SplatPx::ONE,
             distortion: Self::DISTORTION,
+            repair: true,
         }
     }
 }
@@ -54,7 +64,7 @@ pub const fn shades_len(material_count: usize) -> usize {
 /// Clears the target and draws a grid into it. Cannot fail.
 ///
 /// `shades` is memory for a frame's colours, [`shades_len`] words; where it
-/// is shorter, samples are shaded one by one, to the same bytes.
+/// is shorter, pixels are shaded one by one, to the same bytes.
 pub fn draw(
     grid: &Grid<'_>,
     camera: &Camera,
@@ -63,9 +73,17 @@ pub fn draw(
     shades: &mut [u16],
     target: &mut Target<'_>,
 ) -> Stats {
-    target.clear();
+    let projection = Projection::new(camera);
+    let plan = Plan::new(grid, camera, quality, &projection);
     let shader = Shader::new(light, grid.materials(), shades);
-    traverse(grid, camera, quality, &shader, target)
+    let mut stats = Stats::default();
+    for strip in target.strips(camera.width) {
+        let mut canvas = Canvas::new(target.canvas, strip);
+        traverse(grid, camera, &projection, &plan, &mut canvas, &mut stats);
+        canvas.forget_outside(camera.width);
+        resolve(&canvas, plan.repair, &shader, &mut target.picture);
+    }
+    stats
 }
 
 #[cfg(test)]

@@ -13,8 +13,8 @@
 //!   half-integers, the principal point in the middle.
 //! * **w** is the distance along the viewing direction; **depth** is 16 bits,
 //!   larger is nearer, zero is empty.
-//! * **Coverage**: a splat owns the pixels whose centres lie in [low, high)
-//!   of its rectangle, and the pixel that holds its own centre. Of two equal
+//! * **Coverage**: a point owns the pixel that holds its centre; a splat also
+//!   those whose centres lie in [low, high) of its rectangle. Of two equal
 //!   depths the first drawn stays.
 //! * **Faces** are counter-clockwise from their front; normals point outward
 //!   and surfaces are one-sided unless the asset says otherwise.
@@ -28,10 +28,13 @@
 //! asset       bytes in flash -> checked, zero-copy views
 //! camera      eye, directions, focal length
 //! projection  block fixed point: X, Y, w as linear forms; reciprocal
-//! grid        displacement tables, traversal, facing  -> samples
-//! splat       samples -> pixels, depth test
+//! plan        from which distance on which cells are small enough
+//! grid        tables, culling, traversal; packed subtrees  -> samples
+//! splat       cells larger than a pixel -> pixels
+//! canvas      depth << 16 | attribute, a strip at a time; depth test
 //! shade       normal codes x materials -> colours, once a frame
-//! target      colour and depth, or a band of them
+//! resolve     canvas -> colours; holes are closed
+//! target      the caller's colours, or a band of them, and the canvas
 //! stats       what was visited, drawn, skipped
 //! ```
 //!
@@ -44,7 +47,7 @@
 //! use rhogrid_core::numbers::{FocalPx, Length, Turns, Unit, Weight};
 //! use rhogrid_core::target::Target;
 //!
-//! fn show(asset: &[u8], colour: &mut [u16], depth: &mut [u16]) -> Result<(), AssetError> {
+//! fn show(asset: &[u8], colour: &mut [u16], canvas: &mut [u32]) -> Result<(), AssetError> {
 //!     let grid = Grid::open(asset)?;
 //!     let orbit = Orbit {
 //!         yaw: Turns::from_bits(1 << 29),
@@ -58,7 +61,7 @@
 //!         diffuse: Weight::lit("0.8"),
 //!     };
 //!     let mut shades = [0; shades_len(1)];
-//!     if let Ok(mut target) = Target::new(240, 320, colour, depth) {
+//!     if let Ok(mut target) = Target::new(240, 320, colour, canvas) {
 //!         draw(&grid, &camera, &light, &Quality::default(), &mut shades, &mut target);
 //!     }
 //!     Ok(())
@@ -72,12 +75,15 @@ extern crate std;
 
 pub mod asset;
 pub mod camera;
+mod canvas;
 pub mod draw;
 mod grid;
 pub mod normal;
 pub mod numbers;
+mod plan;
 pub mod projection;
 pub mod reciprocal;
+mod resolve;
 mod shade;
 mod splat;
 pub mod stats;

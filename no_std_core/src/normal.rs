@@ -38,6 +38,46 @@ const fn octant() -> [[i16; 3]; OCTANT_CODES] {
     table
 }
 
+/// Codes without their last subdivision: what [`Coarse`] tells apart.
+const COARSE_CODES: usize = CODES / 4;
+
+/// Unit normals of the triangles one level up, for tests that can spare three
+/// degrees: x, y, z in the bits from 22, 11 and 0 on, signed, 511 to one.
+static COARSE: [u32; COARSE_CODES] = {
+    let mut table = [0; COARSE_CODES];
+    let mut code = 0;
+    while code < COARSE_CODES {
+        // The middle child's centroid is its parent's.
+        let v = OCTANT[(code * 4 + 3) % OCTANT_CODES];
+        let mut packed = 0u32;
+        let mut axis = 0;
+        while axis < 3 {
+            let length = (v[axis] as i32 * 511 + (1 << 13)) >> 14;
+            let signed = if code >> (8 + axis) & 1 != 0 {
+                -length
+            } else {
+                length
+            };
+            packed = packed.wrapping_add((signed << (22 - 11 * axis)) as u32);
+            axis += 1;
+        }
+        table[code] = packed;
+        code += 1;
+    }
+    table
+};
+
+/// Fraction bits, nearly, of [`coarse`]'s components: 511 to one.
+pub(crate) const COARSE_ONE: i32 = 511;
+
+/// A code's normal without its last subdivision, at most 3.4 degrees off.
+#[inline(always)]
+pub(crate) fn coarse(code: u16) -> [i32; 3] {
+    let packed = COARSE[usize::from(code & CODE_MASK) / 4] as i32;
+    // Lower fields of either sign borrow one from those above.
+    [packed >> 22, packed << 10 >> 21, packed << 21 >> 21]
+}
+
 /// Centroid of a code's triangle, barycentric, in 96ths.
 const fn centroid(code: usize) -> [i64; 3] {
     // Corners in 32nds.

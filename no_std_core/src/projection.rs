@@ -62,7 +62,7 @@ pub(crate) struct Projection {
     /// Least w that is drawn, block units, at least 1.
     pub near: i32,
     /// A block unit of w is 2^w_scale half sides.
-    w_scale: i32,
+    pub w_scale: i32,
     depth: DepthScale,
 }
 
@@ -131,6 +131,23 @@ impl Projection {
             near: near as i32,
             w_scale: w_shift + GUARD_BITS - 62,
         }
+    }
+
+    /// The cube's half side in block units of w, rounded up.
+    pub fn half_side(&self) -> i64 {
+        shift_round(1, self.w_scale) + 1
+    }
+
+    /// Lower bound of w over the cube, block units.
+    pub fn nearest(&self) -> i32 {
+        let [_, _, w] = &self.forms;
+        let reach: i64 = w.axes.iter().map(|axis| axis.saturating_abs()).sum();
+        ((w.centre - reach) >> GUARD_BITS) as i32 - 2
+    }
+
+    /// What depth lacks to be proportional to 1 / w.
+    pub fn depth_offset(&self) -> i64 {
+        self.depth.offset
     }
 
     /// Depth of a reciprocal w.

@@ -6,7 +6,7 @@
 
 use crate::asset::Rgb;
 use crate::draw::Light;
-use crate::normal::{CODES, COMPONENT_BITS, OCTANT, OCTANT_CODES, decode};
+use crate::normal::{CODES, OCTANT, OCTANT_CODES, decode};
 
 /// Brightness steps between black and a material's full colour. A step is an
 /// eighth of a level of 6-bit green: rounding to it adds 1/16 to the half level
@@ -17,88 +17,111 @@ const STEPS: usize = 512;
 #[derive(Clone, Copy)]
 struct Model<'a> {
     materials: &'a [Rgb],
-    /// Towards the light, Q2.14.
+    /// Towards the light, times the diffuse weight, Q2.14.
     towards: [i32; 3],
-    /// Weights, Q1.15.
+    /// Weight, Q1.15, with half a step.
     ambient: i32,
-    diffuse: i32,
 }
 
 impl Model<'_> {
-    /// Ambient and Lambert's diffuse light on a normal: 0 to [`STEPS`].
+    /// Brightness for Lambert's cosine, weighted: 0 to [`STEPS`]. Q4.28.
     #[inline(always)]
-    fn brightness(&self, normal: [i32; 3], towards: [i32; 3]) -> u16 {
-        let [x, y, z] = normal;
-        // Q2.14 x Q2.14: two unit vectors give 2^28 and some rounding, a unit
-        // vector and any other less than 2^30.
-        let dot = x * towards[0] + y * towards[1] + z * towards[2];
-        let cosine = (dot >> (2 * COMPONENT_BITS - 15)).clamp(0, 1 << 15);
-        // Q1.15, at most one; the product is at most 2^15 x 2^15.
-        let weight = (self.ambient + ((self.diffuse * cosine) >> 15)).clamp(0, 1 << 15);
-        ((weight + 32) >> 6) as u16
+    fn brightness(&self, dot: i32) -> usize {
+        // Q1.15, at most one each: the sum is below 2^17.
+        let weight = self.ambient + (dot.max(0) >> 13);
+        (weight as usize >> 6).min(STEPS)
+    }
+
+    /// Brightness of a normal code.
+    fn brightness_of(&self, code: u16) -> usize {
+        let [x, y, z] = decode(code);
+        // Q2.14 x Q2.14, a unit vector and any other: less than 2^30.
+        self.brightness(x * self.towards[0] + y * self.towards[1] + z * self.towards[2])
     }
 
     fn colour(&self, attribute: u16) -> u16 {
         let material = self.materials.get(usize::from(attribute >> 13));
-        let brightness = self.brightness(decode(attribute), self.towards);
-        shaded(material.copied().unwrap_or([0; 3]), brightness)
+        let ramp = Ramp::new(material.copied().unwrap_or([0; 3]));
+        ramp.colour(self.brightness_of(attribute))
     }
 
-    /// Fills the table, material after material. The first material's part
-    /// holds brightnesses until all others have used them.
+    /// Fills the table, material after material.
     fn fill(&self, table: &mut [u16]) {
-        let Some((first, others)) = table.split_at_mut_checked(CODES) else {
+        for (colours, &material) in table.chunks_exact_mut(CODES).zip(self.materials) {
+            let ramp = Ramp::new(material).all();
+            self.fill_material(&ramp, colours);
+        }
+    }
+
+    /// Two octants at once: of the cosines with a direction and its opposite,
+    /// one is at most zero.
+    fn fill_material(&self, ramp: &[u16; STEPS + 1], colours: &mut [u16]) {
+        let (octants, _) = colours.as_chunks_mut::<OCTANT_CODES>();
+        let [o0, o1, o2, o3, o4, o5, o6, o7] = octants else {
             return;
         };
-        for (codes, octant) in first.chunks_exact_mut(OCTANT_CODES).zip(0u16..) {
-            // Flipping the light's signs instead of the normals'.
-            let flipped = |axis: usize| match octant >> axis & 1 {
-                0 => self.towards[axis],
-                _ => -self.towards[axis],
-            };
-            let towards = [flipped(0), flipped(1), flipped(2)];
-            for (brightness, normal) in codes.iter_mut().zip(&OCTANT) {
-                *brightness = self.brightness(normal.map(i32::from), towards);
+        let dark = ramp[self.brightness(0)];
+        // By the signs' bits: x, y, z from bit 0 on.
+        let pairs = [(0, o0, o7), (1, o1, o6), (2, o2, o5), (3, o3, o4)];
+        for (octant, own, opposite) in pairs {
+            let [mut light_x, mut light_y, light_z] = self.towards;
+            if octant & 1 != 0 {
+                light_x = -light_x;
             }
-        }
-        let mut materials = self.materials.iter();
-        let own = materials.next();
-        for (colours, &material) in others.chunks_exact_mut(CODES).zip(materials) {
-            let ramp = ramp(material);
-            for (colour, &brightness) in colours.iter_mut().zip(&*first) {
-                *colour = lookup(&ramp, brightness);
+            if octant & 2 != 0 {
+                light_y = -light_y;
             }
-        }
-        if let Some(&material) = own {
-            let ramp = ramp(material);
-            for colour in first {
-                *colour = lookup(&ramp, *colour);
+            for ((normal, own), opposite) in OCTANT.iter().zip(own).zip(opposite) {
+                let [x, y, z] = normal.map(i32::from);
+                let dot = x * light_x + y * light_y + z * light_z;
+                let lit = ramp[self.brightness(dot.abs())];
+                (*own, *opposite) = if dot > 0 { (lit, dark) } else { (dark, lit) };
             }
         }
     }
 }
 
-/// A material's colour at a brightness, RGB565, rounded to nearest.
-fn shaded(material: Rgb, brightness: u16) -> u16 {
-    // 8 bits x 5 or 6 bits x Q9: below 2^23.
-    let channel = |value: u8, levels: u32| {
-        (u32::from(value) * levels * u32::from(brightness) / 255 + STEPS as u32 / 2) / STEPS as u32
-    };
-    let [red, green, blue] = material;
-    (channel(red, 31) << 11 | channel(green, 63) << 5 | channel(blue, 31)) as u16
+/// A material's colours by brightness, RGB565, each channel rounded to
+/// nearest.
+struct Ramp {
+    /// A step of each channel, Q22; 512 steps stay below 2^29.
+    steps: [u32; 3],
 }
 
-fn ramp(material: Rgb) -> [u16; STEPS + 1] {
-    let mut ramp = [0; STEPS + 1];
-    for (colour, brightness) in ramp.iter_mut().zip(0u16..) {
-        *colour = shaded(material, brightness);
+impl Ramp {
+    fn new(material: Rgb) -> Self {
+        let [red, green, blue] = material;
+        let step = |value: u8, levels: u32| {
+            // 1 / 255 = 0x808081 / 2^31, within 2^-32.
+            ((u64::from(value) * u64::from(levels) * 0x80_8081) >> (9 + 9)) as u32
+        };
+        Self {
+            steps: [step(red, 31), step(green, 63), step(blue, 31)],
+        }
     }
-    ramp
-}
 
-#[inline(always)]
-fn lookup(ramp: &[u16; STEPS + 1], brightness: u16) -> u16 {
-    ramp.get(usize::from(brightness)).copied().unwrap_or(0)
+    #[inline(always)]
+    fn packed(channels: [u32; 3]) -> u16 {
+        let [red, green, blue] = channels.map(|channel| (channel + (1 << 21)) >> 22);
+        (red << 11 | green << 5 | blue) as u16
+    }
+
+    fn colour(&self, brightness: usize) -> u16 {
+        Self::packed(self.steps.map(|step| step * brightness as u32))
+    }
+
+    /// The colours of all brightnesses.
+    fn all(&self) -> [u16; STEPS + 1] {
+        let mut colours = [0; STEPS + 1];
+        let mut channels = [0; 3];
+        for colour in &mut colours {
+            *colour = Self::packed(channels);
+            for (channel, step) in channels.iter_mut().zip(self.steps) {
+                *channel += step;
+            }
+        }
+        colours
+    }
 }
 
 /// Colours of attributes for one frame.
@@ -110,12 +133,15 @@ pub(crate) struct Shader<'a> {
 impl<'a> Shader<'a> {
     /// Fills the table if `memory` holds it: 8192 words for each material.
     pub fn new(light: &Light, materials: &'a [Rgb], memory: &'a mut [u16]) -> Self {
+        let diffuse = (light.diffuse.to_bits() >> 16) as i32;
         let model = Model {
             materials,
-            // Halves up, without the overflow of adding first.
-            towards: light.towards.map(|c| ((c.to_bits() >> 15) + 1) >> 1),
-            ambient: (light.ambient.to_bits() >> 16) as i32,
-            diffuse: (light.diffuse.to_bits() >> 16) as i32,
+            // Q2.30 x Q1.15 to Q2.14.
+            towards: light.towards.map(|c| {
+                let wide = i64::from(c.to_bits()) * i64::from(diffuse);
+                ((wide >> 30) as i32 + 1) >> 1
+            }),
+            ambient: (light.ambient.to_bits() >> 16) as i32 + 32,
         };
         let table = match memory.get_mut(..CODES * materials.len()) {
             Some(table) => {
@@ -125,6 +151,16 @@ impl<'a> Shader<'a> {
             None => &[],
         };
         Self { model, table }
+    }
+
+    /// The colour of a pixel of the canvas: black where nothing is drawn.
+    #[inline(always)]
+    pub fn colour_of(&self, word: u32) -> u16 {
+        if word == 0 {
+            0
+        } else {
+            self.colour(word as u16)
+        }
     }
 
     /// The colour of an attribute.

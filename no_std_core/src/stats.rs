@@ -10,8 +10,6 @@ pub struct Stats {
     pub nodes_back_facing: u32,
     /// Nodes skipped because they lie outside the picture or behind the eye.
     pub nodes_outside: u32,
-    /// Samples handed to the splatter.
+    /// Samples that reached the depth test.
     pub samples_drawn: u32,
-    /// Colour stores after the depth test.
-    pub pixels_written: u32,
 }

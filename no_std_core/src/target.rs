@@ -1,7 +1,11 @@
-//! The caller's frame: colour and depth words, or a band of them.
+//! The caller's frame: colours, or a band of them, and the canvas.
 //!
 //! Drawing is infallible: what lies outside the band is discarded. Sizes are
 //! checked once, here.
+
+pub use crate::canvas::canvas_len;
+use crate::canvas::{PICTURE_COLUMNS, STRIP_COLUMNS, canvas_rows};
+use core::ops::Range;
 
 use crc::{CRC_32_ISO_HDLC, Crc, Table};
 
@@ -42,6 +46,8 @@ pub enum TargetError {
     ColourLength,
     /// The depth buffer's length is not the rectangle's pixel count.
     DepthLength,
+    /// The canvas is shorter than [`canvas_len`] of one row.
+    CanvasLength,
     /// The rectangle is empty or reaches beyond column or row 4096.
     Size,
 }
@@ -49,20 +55,28 @@ pub enum TargetError {
 /// Largest picture width and height.
 pub const MAX_SIZE: u16 = 4096;
 
-/// The band of a picture that is drawn: RGB565 colours and 16-bit depths,
-/// row-major without padding.
+/// The band of a picture that is drawn: RGB565 colours, row-major without
+/// padding, and the canvas that samples are drawn on.
 ///
-/// Depth is larger where nearer, zero where nothing is drawn; see
-/// [`crate::projection`] for its scale.
+/// The canvas takes strips of up to 240 columns and as many rows as its
+/// length allows; see [`canvas_len`]. A picture that is larger is drawn strip
+/// by strip: a canvas for a few rows serves any picture, one for all rows
+/// serves it at once.
 pub struct Target<'a> {
-    pub(crate) band: Rect,
-    pub(crate) colour: &'a mut [u16],
-    pub(crate) depth: &'a mut [u16],
+    pub(crate) picture: Picture<'a>,
+    pub(crate) canvas: &'a mut [u32],
+}
+
+/// What a frame leaves behind.
+pub(crate) struct Picture<'a> {
+    band: Rect,
+    colour: &'a mut [u16],
+    depth: Option<&'a mut [u16]>,
 }
 
 impl<'a> Target<'a> {
-    /// A target for the whole picture. Both buffers hold `width * height`
-    /// words.
+    /// A target for the whole picture. The colours are `width * height`
+    /// words, the canvas at least [`canvas_len`] of one row.
     ///
     /// # Errors
     /// When a length or the size does not fit.
@@ -70,7 +84,7 @@ impl<'a> Target<'a> {
         width: u16,
         height: u16,
         colour: &'a mut [u16],
-        depth: &'a mut [u16],
+        canvas: &'a mut [u32],
     ) -> Result<Self, TargetError> {
         let band = Rect {
             left: 0,
@@ -78,18 +92,18 @@ impl<'a> Target<'a> {
             right: width,
             bottom: height,
         };
-        Self::band(band, colour, depth)
+        Self::band(band, colour, canvas)
     }
 
     /// A target for a part of the picture: the same pixels that the whole
-    /// picture would have there. Both buffers hold `band.pixels()` words.
+    /// picture would have there. The colours are `band.pixels()` words.
     ///
     /// # Errors
     /// When a length or the size does not fit.
     pub fn band(
         band: Rect,
         colour: &'a mut [u16],
-        depth: &'a mut [u16],
+        canvas: &'a mut [u32],
     ) -> Result<Self, TargetError> {
         if band.pixels() == 0 || band.right > MAX_SIZE || band.bottom > MAX_SIZE {
             return Err(TargetError::Size);
@@ -97,20 +111,77 @@ impl<'a> Target<'a> {
         if colour.len() != band.pixels() {
             return Err(TargetError::ColourLength);
         }
-        if depth.len() != band.pixels() {
-            return Err(TargetError::DepthLength);
+        if canvas_rows(canvas.len()) == 0 {
+            return Err(TargetError::CanvasLength);
         }
         Ok(Self {
-            band,
-            colour,
-            depth,
+            picture: Picture {
+                band,
+                colour,
+                depth: None,
+            },
+            canvas,
         })
     }
 
-    /// Black, and nothing drawn.
-    pub(crate) fn clear(&mut self) {
-        self.colour.fill(0);
-        self.depth.fill(0);
+    /// Asks for depths, too, as many as colours: larger is nearer, zero where
+    /// nothing is drawn; see [`crate::projection`] for the scale.
+    ///
+    /// # Errors
+    /// When the length does not fit.
+    pub fn with_depth(self, depth: &'a mut [u16]) -> Result<Self, TargetError> {
+        let Self { picture, canvas } = self;
+        if depth.len() != picture.band.pixels() {
+            return Err(TargetError::DepthLength);
+        }
+        Ok(Self {
+            picture: Picture {
+                depth: Some(depth),
+                ..picture
+            },
+            canvas,
+        })
+    }
+
+    /// The strips that the band of a picture is drawn in.
+    pub(crate) fn strips(&self, picture_columns: u16) -> impl Iterator<Item = Rect> + use<> {
+        let band = self.picture.band;
+        let is_whole = band.width() == usize::from(picture_columns);
+        let most = match is_whole && picture_columns <= PICTURE_COLUMNS {
+            true => PICTURE_COLUMNS,
+            false => STRIP_COLUMNS,
+        };
+        let rows = canvas_rows(self.canvas.len()).clamp(1, usize::from(MAX_SIZE)) as u16;
+        let tops = (band.top..band.bottom).step_by(usize::from(rows));
+        tops.flat_map(move |top| {
+            let lefts = (band.left..band.right).step_by(usize::from(most));
+            lefts.map(move |left| Rect {
+                left,
+                top,
+                right: band.right.min(left + most),
+                bottom: band.bottom.min(top.saturating_add(rows)),
+            })
+        })
+    }
+}
+
+impl Picture<'_> {
+    /// Colours of a row of the picture.
+    pub(crate) fn colours(&mut self, columns: Range<u16>, row: u16) -> Option<&mut [u16]> {
+        let range = self.range(columns, row);
+        self.colour.get_mut(range)
+    }
+
+    /// Depths of a row of the picture, if they are asked for.
+    pub(crate) fn depths(&mut self, columns: Range<u16>, row: u16) -> Option<&mut [u16]> {
+        let range = self.range(columns, row);
+        self.depth.as_mut()?.get_mut(range)
+    }
+
+    fn range(&self, columns: Range<u16>, row: u16) -> Range<usize> {
+        let start = usize::from(row - self.band.top) * self.band.width();
+        let column = |column: u16| start + usize::from(column - self.band.left);
+        column(columns.start)..column(columns.end)
     }
 }
 

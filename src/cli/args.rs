@@ -221,15 +221,24 @@ pub enum ShadowChoice {
     OnePass,
 }
 
-/// How the leaves of a block reach the screen.
+/// How cells reach the screen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum PathChoice {
-    /// Additions where they err by an eighth of a pixel at most
+    /// Additions where they err by a quarter of a pixel at most
     Auto,
-    /// A reciprocal for each leaf
+    /// A reciprocal and a covering splat for each
     Exact,
-    /// Additions wherever a block lies in front of the eye
+    /// Additions wherever a subtree fits its window
     Affine,
+}
+
+/// Whether pixels that points have missed are closed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum RepairChoice {
+    /// From their neighbours
+    On,
+    /// They stay holes
+    Off,
 }
 
 /// Light and knobs of a frame.
@@ -243,8 +252,7 @@ pub struct QualityArgs {
         allow_hyphen_values = true
     )]
     pub light: Triple,
-    /// A cell whose projection has no side longer than this is one splat,
-    /// pixels
+    /// Cells with edges of at most this many pixels are one sample each
     #[arg(
         long,
         value_name = "PX",
@@ -252,9 +260,12 @@ pub struct QualityArgs {
         allow_negative_numbers = true
     )]
     pub splat: f64,
-    /// How leaves are projected
+    /// How cells are projected
     #[arg(long, value_enum, default_value = "auto")]
     pub path: PathChoice,
+    /// What becomes of pixels that points have missed
+    #[arg(long, value_enum, default_value = "on")]
+    pub repair: RepairChoice,
     /// Shadows; for --reference alone, which traces rays
     #[arg(long, value_enum, default_value = "off")]
     pub shadows: ShadowChoice,

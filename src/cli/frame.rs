@@ -7,9 +7,9 @@ use rhogrid_core::camera::{Camera, Orbit};
 use rhogrid_core::draw::{Light as CoreLight, Quality, draw, shades_len};
 use rhogrid_core::numbers::{FocalPx, Length, SplatPx, Turns, Unit, Weight};
 use rhogrid_core::stats::Stats;
-use rhogrid_core::target::{Target, frame_hash};
+use rhogrid_core::target::{Target, canvas_len, frame_hash};
 
-use super::args::{PathChoice, QualityArgs, ShadowChoice, ViewArgs};
+use super::args::{PathChoice, QualityArgs, RepairChoice, ShadowChoice, ViewArgs};
 use crate::bake::Cube;
 use crate::picture::Picture;
 use crate::view::{Light, View};
@@ -117,6 +117,7 @@ pub fn core_quality(quality: &QualityArgs) -> Quality {
             PathChoice::Exact => SplatPx::ZERO,
             PathChoice::Affine => SplatPx::MAX,
         },
+        repair: quality.repair == RepairChoice::On,
     }
 }
 
@@ -165,11 +166,13 @@ pub fn draw_frame(
 ) -> Frame {
     let pixels = usize::from(camera.width) * usize::from(camera.height);
     let (mut colour, mut depth) = (vec![0; pixels], vec![0; pixels]);
+    let mut canvas = vec![0; canvas_len(camera.height)];
     let mut shades = vec![0; shades_len(grid.materials().len())];
     let mut stats = Stats::default();
     let mut times = Vec::new();
     for _ in 0..repeats.max(1) {
-        let mut target = Target::new(camera.width, camera.height, &mut colour, &mut depth)
+        let mut target = Target::new(camera.width, camera.height, &mut colour, &mut canvas)
+            .and_then(|target| target.with_depth(&mut depth))
             .expect("buffers are as long as the picture");
         let start = std::time::Instant::now();
         stats = draw(grid, camera, light, quality, &mut shades, &mut target);

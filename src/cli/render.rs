@@ -66,7 +66,7 @@ struct Report {
     nodes_back_facing: u32,
     nodes_outside: u32,
     samples_drawn: u32,
-    pixels_written: u32,
+    pixels_written: usize,
     time_ns: u64,
     frames: u32,
     #[serde(flatten)]
@@ -294,7 +294,7 @@ impl Report {
             nodes_back_facing: frame.stats.nodes_back_facing,
             nodes_outside: frame.stats.nodes_outside,
             samples_drawn: frame.stats.samples_drawn,
-            pixels_written: frame.stats.pixels_written,
+            pixels_written: frame.depth.iter().filter(|&&depth| depth > 0).count(),
             time_ns: frame.time_ns,
             frames,
             measures,

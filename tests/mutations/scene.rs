@@ -7,7 +7,7 @@ use rhogrid_core::asset::Grid;
 use rhogrid_core::camera::{Camera, Orbit};
 use rhogrid_core::draw::{Light, Quality, draw, shades_len};
 use rhogrid_core::numbers::{FocalPx, Length, SplatPx, Turns, Unit, Weight};
-use rhogrid_core::target::{Rect, Target};
+use rhogrid_core::target::{Rect, Target, canvas_len};
 
 use super::mutate::{Layout, Random};
 
@@ -54,6 +54,7 @@ pub struct Buffers {
     pub words: Vec<u32>,
     colour: Vec<u16>,
     depth: Vec<u16>,
+    canvas: Vec<u32>,
     shades: Vec<u16>,
 }
 
@@ -124,6 +125,7 @@ impl Buffers {
         let quality = Quality {
             splat: random.pick(&SPLATS),
             distortion: random.pick(&[SplatPx::ZERO, Quality::DISTORTION, SplatPx::MAX]),
+            repair: random.pick(&[true, false]),
         };
         let band = band(random);
         let pixels = band.pixels();
@@ -141,7 +143,12 @@ impl Buffers {
         self.shades.resize(words, 0);
         let middle = GUARD..GUARD + pixels;
         let (colour, depth) = (&mut self.colour[middle.clone()], &mut self.depth[middle]);
-        let mut target = Target::band(band, colour, depth).unwrap();
+        let rows = 1 + random.below(usize::from(SIDE)) as u16;
+        self.canvas.clear();
+        self.canvas.resize(canvas_len(rows), 0x5a5a_5a5a);
+        let mut target = Target::band(band, colour, &mut self.canvas)
+            .and_then(|target| target.with_depth(depth))
+            .unwrap();
         let stats = draw(
             grid,
             &camera,
@@ -160,11 +167,12 @@ impl Buffers {
         }
         let drawn = self.depth[GUARD..GUARD + pixels]
             .iter()
-            .any(|&depth| depth != 0);
-        assert_eq!(drawn, stats.pixels_written > 0);
+            .filter(|&&depth| depth != 0)
+            .count();
+        assert!(drawn == 0 || stats.samples_drawn > 0);
         Drawn {
             samples: stats.samples_drawn,
-            pixels: stats.pixels_written,
+            pixels: drawn as u32,
         }
     }
 }

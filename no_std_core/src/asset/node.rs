@@ -63,6 +63,12 @@ impl Flags {
         }
     }
 
+    /// Whether samples that face away show their other side: faces of every
+    /// direction, drawn from both sides.
+    pub const fn is_sheet(self) -> bool {
+        self.two_sided && self.aperture == APERTURE_ALL
+    }
+
     /// The flags as bits of a record's last word.
     pub const fn to_last(self, rho: u8) -> u16 {
         ((self.aperture as u16 & 15) | (self.two_sided as u16) << 4) << flags_shift(rho)

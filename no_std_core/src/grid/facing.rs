@@ -8,7 +8,7 @@
 
 use crate::asset::node::{APERTURE_ALL, APERTURE_COSINE, APERTURE_SINE, Flags};
 use crate::camera::Camera;
-use crate::normal::{COMPONENT_BITS, OPPOSITE, decode};
+use crate::normal::{COARSE_ONE, COMPONENT_BITS, OPPOSITE, coarse, decode};
 use crate::numbers::{bit_length, shift_round};
 
 /// The scale of eye space and the root's place in it.
@@ -103,6 +103,114 @@ fn length(view: [i32; 3]) -> i32 {
 #[inline(always)]
 pub(crate) fn horizon(view: [i32; 3], radius: i32) -> i32 {
     radius + length(view) * 3 / 64
+}
+
+/// Facing tests of all cells below one: by its view vector, scaled to unit
+/// length, against thresholds of the level.
+pub(super) struct Normals {
+    /// From the eye, unit length at most, Q14.
+    view: [i32; 3],
+    /// Sine that a test may be off for the cell's size.
+    pub doubt: i32,
+}
+
+/// Q14 times 511 to one.
+const TEST_ONE: i32 = COARSE_ONE << 14;
+/// Sine of what coarse normals and the blocks' sizes may be off.
+const DOUBT: i32 = TEST_ONE / 16;
+
+/// The sines of [`APERTURE_SINE`] for [`Normals`].
+static TEST_SINE: [i32; 15] = {
+    let mut sines = [0; 15];
+    let mut aperture = 0;
+    while aperture < 15 {
+        sines[aperture] = ((APERTURE_SINE[aperture] as i64 * TEST_ONE as i64) >> 15) as i32;
+        aperture += 1;
+    }
+    sines
+};
+
+/// A factor: mantissa 2^(shift - 32).
+struct Scale {
+    mantissa: u32,
+    shift: i32,
+}
+
+/// Inverse roots, rounded down: entry i holds 2^33 / sqrt(i + 1).
+static INVERSE_ROOT: [u32; 64] = {
+    let mut table = [0; 64];
+    let mut index = 16;
+    while index < 64 {
+        table[index] = ((1u128 << 66) / (index as u128 + 1)).isqrt() as u32;
+        index += 1;
+    }
+    table
+};
+
+/// 2^14 over the length of a vector with this square, at most three percent
+/// too small.
+#[inline(always)]
+fn inverse_length(square: u32) -> Scale {
+    // An even shift brings the highest bit to 30 or 31.
+    let mut normalized = square | u32::from(square == 0);
+    let mut halved = 0;
+    for step in [8, 4, 2, 1] {
+        if normalized >> (32 - 2 * step) == 0 {
+            normalized <<= 2 * step;
+            halved += step;
+        }
+    }
+    // With i for the upper six bits, the length is at most sqrt(i + 1) 2^(13 -
+    // halved), and 2^14 over it at least 2^33 / sqrt(i + 1) 2^(halved - 32).
+    Scale {
+        mantissa: INVERSE_ROOT[(normalized >> 26) as usize % 64],
+        shift: halved,
+    }
+}
+
+impl Normals {
+    /// For a cell with a view vector, and a radius about its centre.
+    #[inline(always)]
+    pub fn new(view: [i32; 3], radius: i32) -> Self {
+        let [x, y, z] = view.map(|c| c.unsigned_abs());
+        // Below 2^15 each.
+        let square = x * x + y * y + z * z;
+        let scale = inverse_length(square);
+        // A component grows to 16 bits at most, a radius to 31: eye space's
+        // shortest vectors are a unit long.
+        let unit =
+            |c: i32| ((i64::from(c << scale.shift) * i64::from(scale.mantissa)) >> 32) as i32;
+        let radius = unit(radius.min(1 << 15)).min(1 << 15) * COARSE_ONE;
+        Self {
+            view: view.map(unit),
+            doubt: DOUBT + radius,
+        }
+    }
+
+    #[inline(always)]
+    fn along(&self, code: u16) -> i32 {
+        let [x, y, z] = coarse(code);
+        x * self.view[0] + y * self.view[1] + z * self.view[2]
+    }
+
+    /// Whether all of a cell faces away, by its cone.
+    #[inline(always)]
+    pub fn is_away(&self, flags: Flags, code: u16) -> bool {
+        match TEST_SINE.get(usize::from(flags.aperture)) {
+            Some(&sine) => self.along(code) > sine + self.doubt,
+            None => false,
+        }
+    }
+
+    /// The attribute of a sheet's sample as it is seen.
+    #[inline(always)]
+    pub fn turned(&self, attribute: u16) -> u16 {
+        if self.along(attribute) > 0 {
+            attribute ^ OPPOSITE
+        } else {
+            attribute
+        }
+    }
 }
 
 /// The attribute of a sample that is drawn though its own normal faces away.

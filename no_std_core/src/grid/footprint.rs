@@ -2,12 +2,12 @@
 //!
 //! Source: Duguet and Drettakis 2003, 5.2 (bounds of a projected cell).
 
+use super::packed::Step;
 use super::tables::Point;
 use crate::numbers::{SCREEN_BITS, shift_round};
 use crate::projection::Projection;
 use crate::reciprocal::{Reciprocal, reciprocal};
 use crate::splat::Extent;
-use crate::target::Rect;
 
 /// Half sides of rectangles saturate here, at 2^17 px: a place is at most 2^30
 /// and half a picture from zero, so that it and a half side add up.
@@ -23,13 +23,6 @@ pub(super) struct Place {
 }
 
 impl Place {
-    /// A place to fill arrays with.
-    pub const ORIGIN: Self = Self {
-        x: 0,
-        y: 0,
-        depth: 1,
-    };
-
     /// Projects a point in front of the eye, given 1 / w.
     #[inline(always)]
     pub fn of(projection: &Projection, point: Point, inverse: Reciprocal) -> Self {
@@ -42,54 +35,12 @@ impl Place {
         }
     }
 
-    /// Whether a cell of these half sides lies wholly beside a band; a
-    /// saturated half side reaches anywhere.
-    pub fn is_outside(&self, half: [i32; 2], band: Rect) -> bool {
-        let pixel = |bound: u16| i32::from(bound) << SCREEN_BITS;
-        let is_beside = |at: i32, half: i32, low: u16, high: u16| {
-            // 1/16 px and 2^-16 of the half side: more than rounding.
-            let reach = half + (half >> 16) + (1 << (SCREEN_BITS - 4));
-            half < HALF_LIMIT && (at + reach < pixel(low) || at - reach > pixel(high))
-        };
-        let [half_x, half_y] = half;
-        is_beside(self.x, half_x, band.left, band.right)
-            || is_beside(self.y, half_y, band.top, band.bottom)
-    }
-}
-
-/// A cell that is not near, projected.
-pub(super) struct Projected {
-    pub place: Place,
-    /// Half the sides of its bounding rectangle, Q20.12 pixels.
-    pub half: [i32; 2],
-    pub inverse: Reciprocal,
-    /// 1 / w of its nearest corner.
-    pub nearest: Reciprocal,
-    /// Along its subcells' half edges.
-    pub slopes: Slopes,
-}
-
-impl Projected {
-    /// Projects a cell whose nearest corner has the w `nearest` and whose
-    /// subcells have the given half edges.
-    #[inline(never)]
-    pub fn new(
-        projection: &Projection,
-        centre: Point,
-        nearest: i32,
-        half_edges: &[Point; 3],
-        rho: u8,
-    ) -> Self {
-        let inverse = reciprocal(centre.w as u32);
-        let nearest = reciprocal(nearest as u32);
-        let slopes = Slopes::at(centre, inverse, half_edges);
-        Self {
-            place: Place::of(projection, centre, inverse),
-            // A cell is rho subcells wide.
-            half: slopes.half(projection, nearest, i32::from(rho)),
-            inverse,
-            nearest,
-            slopes,
+    /// The place as a step from the picture's corner.
+    pub fn step(self) -> Step {
+        Step {
+            x: self.x,
+            y: self.y,
+            depth: i32::from(self.depth),
         }
     }
 }
@@ -102,9 +53,6 @@ impl Projected {
 pub(super) struct Slopes {
     /// dX - X / w dw and dY - Y / w dw of each half edge, block units.
     pub along: [[i32; 2]; 3],
-    /// dw / w of each half edge, Q2.30. It saturates at one, which only a
-    /// leaf that reaches behind the eye exceeds: no rectangle bounds that one.
-    pub ratios: [i32; 3],
 }
 
 impl Slopes {
@@ -112,6 +60,8 @@ impl Slopes {
     #[inline(always)]
     pub fn at(centre: Point, inverse: Reciprocal, half_edges: &[Point; 3]) -> Self {
         let [first, second, third] = half_edges;
+        // dw / w, Q2.30. It saturates at one, which only a leaf that reaches
+        // behind the eye exceeds: no rectangle bounds that one.
         let ratio = |edge: &Point| inverse.times(edge.w, 30);
         let ratios = [ratio(first), ratio(second), ratio(third)];
         let along = |edge: &Point, ratio: i32| {
@@ -124,7 +74,6 @@ impl Slopes {
                 along(second, ratios[1]),
                 along(third, ratios[2]),
             ],
-            ratios,
         }
     }
 

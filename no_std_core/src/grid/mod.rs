@@ -5,9 +5,13 @@
 //! exact basis (the paper divides the table above); nodes whose surfaces all
 //! face away are skipped with their subtrees.
 
+mod clip;
 mod facing;
 mod footprint;
 mod leaves;
+mod lists;
+mod packed;
+mod subtree;
 mod tables;
 mod traverse;
 

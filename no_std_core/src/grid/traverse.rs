@@ -1,40 +1,40 @@
-//! Multi-level traversal: from the root down to cells that are small enough
-//! to be one splat, or to leaves.
+//! Multi-level traversal: from the root down to cells that are small enough,
+//! or to leaves.
 //!
 //! Source: Duguet and Drettakis 2003, 5.1 (centres by additions) and 5.2
-//! (multi-level stop, bounds of a projected cell).
+//! (multi-level stop, culling). Changes here: the cell above decides for its
+//! children, by its distance alone; what is inside the picture is not tested
+//! again below; the last one or two levels are walked in screen space
+//! ([`super::packed`]) where that is exact enough.
 
-use super::facing::{EyeSpace, Facing, cone};
-use super::footprint::{Projected, is_beside, near_limit, rim_drop};
-use super::leaves::Seen;
+use super::clip::{Clip, Side};
+use super::facing::{EyeSpace, Normals};
+use super::footprint::{Place, is_beside, near_limit};
+use super::lists::{self, COUNTS, LISTS};
+use super::subtree::Scratch;
 use super::tables::{Point, Tables};
 use crate::asset::Grid;
-use crate::asset::node::{APERTURE_ALL, Flags, halves, occupied};
+use crate::asset::node::{Flags, halves};
 use crate::camera::Camera;
-use crate::draw::Quality;
-use crate::numbers::{SCREEN_BITS, SplatPx};
+use crate::canvas::Canvas;
+use crate::plan::Plan;
 use crate::projection::Projection;
-use crate::shade::Shader;
-use crate::splat::Extent;
 use crate::stats::Stats;
-use crate::target::Target;
 
-/// Everything that a frame's traversal reads.
+/// Everything that a strip's traversal reads.
 pub(super) struct Frame<'a, const CELLS: usize, const LEVELS: usize> {
     pub grid: &'a Grid<'a>,
     pub projection: &'a Projection,
-    pub shader: &'a Shader<'a>,
+    pub plan: &'a Plan,
     pub tables: &'a Tables<CELLS, LEVELS>,
-    /// Longest side of a cell's rectangle that is one splat, Q20.12 pixels.
-    pub splat_side: i32,
-    /// Largest error of an affine block, Q20.12 pixels.
-    pub distortion: i32,
+    pub clip: &'a Clip<LEVELS>,
 }
 
-/// What a frame's traversal writes.
-pub(super) struct Output<'t, 'b> {
-    pub target: &'t mut Target<'b>,
-    pub stats: Stats,
+/// What a strip's traversal writes.
+pub(super) struct Output<'t, 'c> {
+    pub canvas: &'t mut Canvas<'c>,
+    pub stats: &'t mut Stats,
+    pub scratch: &'t mut Scratch,
 }
 
 /// A cell on the way down.
@@ -48,26 +48,24 @@ pub(super) struct Cell {
     pub centre: Point,
     /// From the eye to the centre, eye space.
     pub view: [i32; 3],
+    /// Whether all of it is known to lie inside the strip.
+    pub inside: bool,
 }
 
-/// Q16.16 to Q20.12 pixels; the largest values saturate.
-fn screen(length: SplatPx) -> i32 {
-    (length.to_bits() >> (16 - SCREEN_BITS)) as i32
-}
-
-/// Draws a grid; the target is already clear.
+/// Draws a grid on a clear canvas.
 pub(crate) fn traverse(
     grid: &Grid<'_>,
     camera: &Camera,
-    quality: &Quality,
-    shader: &Shader<'_>,
-    target: &mut Target<'_>,
-) -> Stats {
+    projection: &Projection,
+    plan: &Plan,
+    canvas: &mut Canvas<'_>,
+    stats: &mut Stats,
+) {
     match grid.rho() {
-        2 => run::<2, 8, 15>(grid, camera, quality, shader, target),
-        3 => run::<3, 27, 9>(grid, camera, quality, shader, target),
-        4 => run::<4, 64, 7>(grid, camera, quality, shader, target),
-        _ => run::<5, 125, 6>(grid, camera, quality, shader, target),
+        2 => run::<2, 8, 15>(grid, camera, projection, plan, canvas, stats),
+        3 => run::<3, 27, 9>(grid, camera, projection, plan, canvas, stats),
+        4 => run::<4, 64, 7>(grid, camera, projection, plan, canvas, stats),
+        _ => run::<5, 125, 6>(grid, camera, projection, plan, canvas, stats),
     }
 }
 
@@ -75,34 +73,36 @@ pub(crate) fn traverse(
 fn run<const RHO: u8, const CELLS: usize, const LEVELS: usize>(
     grid: &Grid<'_>,
     camera: &Camera,
-    quality: &Quality,
-    shader: &Shader<'_>,
-    target: &mut Target<'_>,
-) -> Stats {
-    let projection = Projection::new(camera);
+    projection: &Projection,
+    plan: &Plan,
+    canvas: &mut Canvas<'_>,
+    stats: &mut Stats,
+) {
     let eye_space = EyeSpace::new(camera);
-    let tables = Tables::new(RHO, grid.depth(), &projection, eye_space.unit);
+    let tables = Tables::new(RHO, plan.depth, projection, eye_space.unit);
+    let clip = Clip::new(projection, &tables, plan.depth, canvas.strip);
     let root = Cell {
         depth: 0,
         index: 0,
         first_child: 0,
         centre: tables.centre,
         view: eye_space.centre,
+        inside: false,
     };
     let frame = Frame::<CELLS, LEVELS> {
         grid,
-        projection: &projection,
-        shader,
+        projection,
+        plan,
         tables: &tables,
-        splat_side: screen(quality.splat),
-        distortion: screen(quality.distortion),
+        clip: &clip,
     };
+    let mut scratch = Scratch::EMPTY;
     let mut output = Output {
-        target,
-        stats: Stats::default(),
+        canvas,
+        stats,
+        scratch: &mut scratch,
     };
     frame.start::<RHO>(&root, &mut output);
-    output.stats
 }
 
 impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
@@ -115,24 +115,16 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
             return;
         };
         match next {
-            Some(next) => {
+            Some(next) if self.plan.depth > 0 => {
                 let record = next.nodes.get(..halves(RHO)).unwrap_or(&[]);
                 self.node::<RHO>(root, record, attribute, output);
             }
-            None => {
-                let extents = self.tables.extents(0);
-                // Nothing tells what else it holds.
-                let flags = Flags {
-                    aperture: APERTURE_ALL,
-                    two_sided: true,
-                };
-                let seen = Seen::new(root.view, extents.eye_radius, flags, Facing::Maybe);
-                self.near_leaf(root.centre, extents.half_edges, seen.own(attribute), output);
-            }
+            _ => self.lone_root(root, attribute, output),
         }
     }
 
-    /// Visits an intermediate cell: skips it, draws it, or descends.
+    /// Visits an intermediate cell: skips it, draws its children, or visits
+    /// them.
     fn node<const RHO: u8>(
         &self,
         cell: &Cell,
@@ -143,71 +135,59 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
         output.stats.nodes_visited += 1;
         let Some(&last) = record.last() else { return };
         let flags = Flags::from_last(RHO, last);
-        let extents = self.tables.extents(cell.depth);
-        let facing = cone(flags, attribute, cell.view, extents.eye_radius);
-        if facing == Facing::Away {
+        let normals = Normals::new(cell.view, self.tables.extents(cell.depth).eye_radius);
+        if normals.is_away(flags, attribute) {
             output.stats.nodes_back_facing += 1;
             return;
         }
-        let seen = Seen::new(cell.view, extents.eye_radius, flags, facing);
-        let (near, w) = (self.projection.near, cell.centre.w);
-        let nearest = w - extents.half_w;
-        if nearest < near_limit(near, w) {
-            let is_behind = w + extents.half_w < near;
-            if is_behind || is_beside(self.projection, cell.centre, extents.half_edges) {
-                output.stats.nodes_outside += 1;
+        let side = match cell.inside {
+            true => Side::Inside,
+            false => self.side(cell),
+        };
+        if side == Side::Outside {
+            output.stats.nodes_outside += 1;
+            return;
+        }
+        let cell = Cell {
+            inside: side == Side::Inside,
+            ..*cell
+        };
+        let w = cell.centre.w;
+        let below = cell.depth + 1;
+        let is_last = |depth: u8| depth == self.plan.depth;
+        let plan = self.plan.level(below);
+        if is_last(below) || w >= plan.stop {
+            if w >= plan.packed[0] {
+                self.packed_block::<RHO>(&cell, record, flags, &normals, output);
             } else {
-                self.descend::<RHO>(cell, record, seen, None, output);
+                self.leaves::<RHO>(&cell, record, flags, attribute, output);
             }
             return;
         }
-        let half_edges = &self.tables.below(cell.depth).half_edges;
-        let projected = Projected::new(self.projection, cell.centre, nearest, half_edges, RHO);
-        if projected
-            .place
-            .is_outside(projected.half, output.target.band)
+        let plan = self.plan.level(below + 1);
+        let is_packed = (is_last(below + 1) || w >= plan.stop)
+            && w >= plan.packed[1]
+            && self.packed_tree::<RHO>(&cell, record, &normals, output);
+        if !is_packed {
+            self.children::<RHO>(&cell, record, output);
+        }
+    }
+
+    /// Where a cell lies. Of cells next to the eye the strip tells nothing, but
+    /// the picture does: see [`is_beside`].
+    fn side(&self, cell: &Cell) -> Side {
+        let extents = self.tables.extents(cell.depth);
+        let (near, w) = (self.projection.near, cell.centre.w);
+        if w - extents.half_w < near_limit(near, w)
+            && is_beside(self.projection, cell.centre, extents.half_edges)
         {
-            output.stats.nodes_outside += 1;
-        } else if 2 * projected.half[0].max(projected.half[1]) <= self.splat_side {
-            self.node_splat(cell, &projected, seen.own(attribute), output);
-        } else {
-            self.descend::<RHO>(cell, record, seen, Some(&projected), output);
+            return Side::Outside;
         }
-    }
-
-    fn descend<const RHO: u8>(
-        &self,
-        cell: &Cell,
-        record: &[u16],
-        seen: Seen,
-        projected: Option<&Projected>,
-        output: &mut Output<'_, '_>,
-    ) {
-        if cell.depth + 1 == self.grid.depth() {
-            self.leaves::<RHO>(cell, record, seen, projected, output);
-        } else {
-            self.children::<RHO>(cell, record, output);
-        }
-    }
-
-    /// Draws an intermediate cell as one splat.
-    fn node_splat(
-        &self,
-        cell: &Cell,
-        projected: &Projected,
-        attribute: u16,
-        output: &mut Output<'_, '_>,
-    ) {
-        let half_edges = self.tables.extents(cell.depth).half_edges;
-        let w = cell.centre.w;
-        let extent = Extent {
-            half: projected.half,
-            rim_drop: rim_drop(self.projection, w, projected.inverse, half_edges),
-        };
-        self.splat(projected.place, &extent, attribute, output);
+        self.clip.side(cell.depth, cell.centre)
     }
 
     /// Visits the children of a cell, all of which are intermediate.
+    #[inline(never)]
     fn children<const RHO: u8>(&self, cell: &Cell, record: &[u16], output: &mut Output<'_, '_>) {
         let table = self.tables.below(cell.depth);
         let below = usize::from(cell.depth) + 1;
@@ -223,34 +203,52 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
             .zip(records.chunks_exact(size))
             .zip(cell.first_child..);
         let mut first_child = next.links.get(cell.index).copied().unwrap_or(0) as usize;
-        let displacements = table
-            .displacements
-            .chunks(16)
-            .zip(table.eye_displacements.chunks(16));
-        for (&half, (displacements, eye_displacements)) in record.iter().zip(displacements) {
-            let mut bits = half;
-            for (displacement, eye_displacement) in displacements.iter().zip(eye_displacements) {
-                if bits & 1 != 0 {
-                    let Some(((&attribute, record), index)) = children.next() else {
-                        return;
-                    };
-                    let [x, y, z] = cell.view;
-                    let child = Cell {
-                        depth: cell.depth + 1,
-                        index,
-                        first_child,
-                        centre: cell.centre.plus(*displacement),
-                        view: [
-                            x + eye_displacement[0],
-                            y + eye_displacement[1],
-                            z + eye_displacement[2],
-                        ],
-                    };
-                    first_child += occupied(RHO, record) as usize;
-                    self.node::<RHO>(&child, record, attribute, output);
-                }
-                bits >>= 1;
+        let rows = lists::chunk_rows(RHO) * usize::from(RHO);
+        let displacements = table.displacements.chunks(rows);
+        let eye_displacements = table.eye_displacements.chunks(rows);
+        let chunks = (0..lists::chunks(RHO)).zip(displacements.zip(eye_displacements));
+        for (chunk, (displacements, eye_displacements)) in chunks {
+            let bits = lists::chunk::<RHO>(record, chunk) % 512;
+            let mut list = LISTS[bits];
+            let own = children.by_ref().take(usize::from(COUNTS[bits]));
+            for ((&attribute, record), index) in own {
+                let at = (list & 15) as usize ^ 8;
+                list >>= 4;
+                let (Some(displacement), Some(eye_displacement)) =
+                    (displacements.get(at), eye_displacements.get(at))
+                else {
+                    return;
+                };
+                let [x, y, z] = cell.view;
+                let child = Cell {
+                    depth: cell.depth + 1,
+                    index,
+                    first_child,
+                    centre: cell.centre.plus(*displacement),
+                    view: [
+                        x + eye_displacement[0],
+                        y + eye_displacement[1],
+                        z + eye_displacement[2],
+                    ],
+                    inside: cell.inside,
+                };
+                first_child += lists::count::<RHO>(record);
+                self.node::<RHO>(&child, record, attribute, output);
             }
         }
+    }
+
+    /// Whether a subtree centred at a place may touch the strip or a pixel
+    /// next to it.
+    #[inline(always)]
+    pub(super) fn is_near_strip(&self, place: &Place, output: &Output<'_, '_>) -> bool {
+        use crate::canvas::REACH;
+        use crate::numbers::SCREEN_BITS;
+        let strip = output.canvas.strip;
+        let within = |at: i32, low: u16, high: u16| {
+            let pixel = at >> SCREEN_BITS;
+            pixel >= i32::from(low) - REACH && pixel < i32::from(high) + REACH
+        };
+        within(place.x, strip.left, strip.right) && within(place.y, strip.top, strip.bottom)
     }
 }

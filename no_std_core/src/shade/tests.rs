@@ -70,8 +70,7 @@ fn brightness_grows_with_the_cosine() {
         let shader = Shader::new(&light, &materials, &mut []);
         let mut all: std::vec::Vec<_> = (0..CODES as u16)
             .map(|code| {
-                let model = &shader.model;
-                let brightness = model.brightness(decode(code), model.towards);
+                let brightness = shader.model.brightness_of(code);
                 (brightness, shader.colour(code))
             })
             .collect();

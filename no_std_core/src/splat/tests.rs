@@ -1,4 +1,5 @@
 use super::*;
+use crate::canvas::canvas_len;
 use crate::target::Rect;
 use crate::testing::Rng;
 use std::string::String;
@@ -7,45 +8,62 @@ use std::vec::Vec;
 const CORE: u16 = 1000;
 const DROP: u16 = 10;
 
-/// A picture of its own with the buffers it needs.
-struct Canvas {
-    band: Rect,
-    colour: Vec<u16>,
-    depth: Vec<u16>,
-    stats: Stats,
+/// A strip with the memory it needs.
+struct Board {
+    words: Vec<u32>,
+    strip: Rect,
+    splats: Vec<(Splat, Extent)>,
 }
 
-impl Canvas {
+impl Board {
     fn new(left: u16, top: u16, right: u16, bottom: u16) -> Self {
-        let band = Rect {
-            left,
-            top,
-            right,
-            bottom,
-        };
         Self {
-            band,
-            colour: std::vec![0; band.pixels()],
-            depth: std::vec![0; band.pixels()],
-            stats: Stats::default(),
+            words: std::vec![0; canvas_len(bottom - top)],
+            strip: Rect {
+                left,
+                top,
+                right,
+                bottom,
+            },
+            splats: Vec::new(),
         }
     }
 
     fn draw(&mut self, splat: &Splat, extent: &Extent) {
-        let mut target = Target::band(self.band, &mut self.colour, &mut self.depth)
-            .expect("buffers fit the band");
-        draw(&mut target, &mut self.stats, splat, extent);
+        self.splats.push((*splat, *extent));
+    }
+
+    /// The words of the strip, row after row.
+    fn pixels(&mut self) -> Vec<u32> {
+        let strip = self.strip;
+        let mut canvas = Canvas::new(&mut self.words, strip);
+        for (splat, extent) in &self.splats {
+            draw(&mut canvas, splat, extent);
+        }
+        let rows = strip.top..strip.bottom;
+        let row = |row| {
+            let lines = canvas.neighbourhood(&(strip.left..strip.right), row);
+            let [_, line, _] = lines.expect("the canvas holds the strip");
+            line[1..=strip.width()].to_vec()
+        };
+        rows.flat_map(row).collect()
+    }
+
+    fn depths(&mut self) -> Vec<u16> {
+        let pixels = self.pixels();
+        pixels.iter().map(|pixel| (pixel >> 16) as u16).collect()
     }
 
     /// `#` core, `+` rim, `.` nothing, as drawn by [`at`].
-    fn map(&self) -> Vec<String> {
+    fn map(&mut self) -> Vec<String> {
         let letter = |depth: &u16| match *depth {
             0 => '.',
             CORE => '#',
             depth if depth == CORE - DROP => '+',
             depth => panic!("depth {depth}"),
         };
-        let rows = self.depth.chunks(self.band.width());
+        let depths = self.depths();
+        let rows = depths.chunks(self.strip.width());
         rows.map(|row| row.iter().map(letter).collect()).collect()
     }
 }
@@ -57,7 +75,7 @@ fn at(x: f64, y: f64) -> Splat {
         x: bits(x),
         y: bits(y),
         depth: CORE,
-        colour: 7,
+        attribute: 7,
     }
 }
 
@@ -127,12 +145,10 @@ fn coverage_is_that_of_pixel_centres() {
         ),
     ];
     for (splat, extent, want) in cases {
-        let mut canvas = Canvas::new(0, 0, 7, 5);
+        let mut canvas = Board::new(0, 0, 7, 5);
         canvas.draw(&splat, &extent);
         let map = canvas.map();
         assert_eq!(map, want, "{splat:?} {extent:?}\n{}", map.join("\n"));
-        let drawn = want.join("").chars().filter(|&c| c != '.').count();
-        assert_eq!(canvas.stats.pixels_written, drawn as u32);
     }
 }
 
@@ -142,27 +158,28 @@ fn a_band_has_the_pixels_of_the_whole() {
     for case in 0..2000 {
         let (left, top) = (rng.u16(..16), rng.u16(..16));
         let (right, bottom) = (rng.u16(left + 1..=16), rng.u16(top + 1..=16));
-        let mut whole = Canvas::new(0, 0, 16, 16);
-        let mut band = Canvas::new(left, top, right, bottom);
+        let mut whole = Board::new(0, 0, 16, 16);
+        let mut band = Board::new(left, top, right, bottom);
         for _ in 0..rng.u32(1..8) {
             let mut place = || 24.0 * rng.f64() - 4.0;
             let mut splat = at(place(), place());
-            splat.colour = rng.u16(..);
+            splat.attribute = rng.u16(..);
             splat.depth = rng.u16(1..40);
             let extent = half(6.0 * rng.f64(), 6.0 * rng.f64());
             whole.draw(&splat, &extent);
             band.draw(&splat, &extent);
         }
-        let mut inside = 0..band.band.pixels();
+        let mut inside = band.pixels().into_iter();
+        let all = whole.pixels();
         for y in top..bottom {
             for x in left..right {
                 let pixel = usize::from(y) * 16 + usize::from(x);
                 let own = inside.next().expect("as many as the band has");
-                let (got, want) = (
-                    (band.colour[own], band.depth[own]),
-                    (whole.colour[pixel], whole.depth[pixel]),
+                assert_eq!(
+                    own, all[pixel],
+                    "case {case}: pixel {x}, {y} of {:?}",
+                    band.strip
                 );
-                assert_eq!(got, want, "case {case}: pixel {x}, {y} of {:?}", band.band);
             }
         }
     }
@@ -178,7 +195,7 @@ fn splats_that_tile_leave_no_gap() {
             half: half_side,
             rim_drop: DROP,
         };
-        let mut canvas = Canvas::new(0, 0, 24, 24);
+        let mut canvas = Board::new(0, 0, 24, 24);
         let count = 6;
         for row in 0..count {
             for column in 0..count {
@@ -186,7 +203,7 @@ fn splats_that_tile_leave_no_gap() {
                     x: first[0] + 2 * half_side[0] * column,
                     y: first[1] + 2 * half_side[1] * row,
                     depth: CORE,
-                    colour: 7,
+                    attribute: 7,
                 };
                 canvas.draw(&splat, &extent);
             }
@@ -196,7 +213,7 @@ fn splats_that_tile_leave_no_gap() {
             let low = first[axis] - half_side[axis];
             (low..low + 2 * half_side[axis] * count).contains(&centre)
         };
-        for (index, &depth) in canvas.depth.iter().enumerate() {
+        for (index, depth) in canvas.depths().into_iter().enumerate() {
             let (x, y) = (index as i32 % 24, index as i32 / 24);
             assert!(
                 depth > 0 || !(covers(0, x) && covers(1, y)),
@@ -214,37 +231,35 @@ fn rims_never_cover_cores_of_equal_depth() {
                 rim_drop: drop,
                 ..half(2.5, 2.5)
             };
-            let mut canvas = Canvas::new(0, 0, 9, 9);
+            let mut canvas = Board::new(0, 0, 9, 9);
             let mut splat = at(3.5, 4.5);
-            (splat.depth, splat.colour) = (depth, 1);
+            (splat.depth, splat.attribute) = (depth, 1);
             canvas.draw(&splat, &extent);
-            let core = |canvas: &Canvas| (canvas.colour[4 * 9 + 3], canvas.depth[4 * 9 + 3]);
-            assert_eq!(core(&canvas), (1, depth));
+            let word = |attribute: u32| u32::from(depth) << 16 | attribute;
+            assert_eq!(canvas.pixels()[4 * 9 + 3], word(1));
             splat.x += 2 * SCREEN_ONE;
-            splat.colour = 2;
+            splat.attribute = 2;
             canvas.draw(&splat, &extent);
-            assert_eq!(core(&canvas), (1, depth), "drop {drop}");
+            assert_eq!(canvas.pixels()[4 * 9 + 3], word(1), "drop {drop}");
             // The neighbour's core wins over the first's rim, if it is nearer.
-            let other = (canvas.colour[4 * 9 + 5], canvas.depth[4 * 9 + 5]);
             let want = if depth == 1 { 1 } else { 2 };
-            assert_eq!(other, (want, depth), "drop {drop}");
+            assert_eq!(canvas.pixels()[4 * 9 + 5], word(want), "drop {drop}");
         }
     }
 }
 
 #[test]
 fn of_equal_depths_the_first_stays() {
-    let mut canvas = Canvas::new(0, 0, 1, 1);
-    for (depth, colour) in [(5, 1), (5, 2), (4, 3), (6, 4), (6, 5)] {
+    let mut canvas = Board::new(0, 0, 1, 1);
+    for (depth, attribute) in [(5, 1), (5, 2), (4, 3), (6, 4), (6, 5)] {
         let splat = Splat {
             depth,
-            colour,
+            attribute,
             ..at(0.5, 0.5)
         };
         canvas.draw(&splat, &half(0.5, 0.5));
     }
-    assert_eq!((canvas.colour[0], canvas.depth[0]), (4, 6));
-    assert_eq!(canvas.stats.pixels_written, 2);
+    assert_eq!(canvas.pixels()[0], 6 << 16 | 4);
 }
 
 #[test]
@@ -258,16 +273,16 @@ fn saturated_places_and_extents_do_not_overflow() {
                     x,
                     y,
                     depth: CORE,
-                    colour: 7,
+                    attribute: 7,
                 };
                 let extent = Extent {
                     half: [side, side],
                     rim_drop: DROP,
                 };
-                let mut canvas = Canvas::new(0, 0, 2, 2);
+                let mut canvas = Board::new(0, 0, 2, 2);
                 canvas.draw(&splat, &extent);
                 let holds = x == 0 && y == 0;
-                assert_eq!(canvas.depth[0] > 0, holds, "{splat:?} {extent:?}");
+                assert_eq!(canvas.depths()[0] > 0, holds, "{splat:?} {extent:?}");
             }
         }
     }

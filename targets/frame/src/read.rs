@@ -70,6 +70,7 @@ impl<'a> Frame<'a> {
         let quality = Quality {
             splat: SplatPx::from_bits(header.word()),
             distortion: SplatPx::from_bits(header.word()),
+            repair: header.word() != 0,
         };
         let settings = Settings {
             width: (size & 0xffff) as u16,

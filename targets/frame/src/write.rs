@@ -37,7 +37,7 @@ pub fn write(
         light.diffuse.to_bits(),
         settings.quality.splat.to_bits(),
         settings.quality.distortion.to_bits(),
-        0,
+        u32::from(settings.quality.repair),
     ];
     for word in header {
         put(&word.to_le_bytes());

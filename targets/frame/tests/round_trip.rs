@@ -19,6 +19,7 @@ fn settings() -> Settings {
         quality: Quality {
             splat: SplatPx::from_bits(0x8001_0002),
             distortion: SplatPx::from_bits(0x2345),
+            repair: false,
         },
     }
 }

@@ -31,6 +31,11 @@ fn unknown_words() -> &'static mut [u16] {
     black_box(&mut [])
 }
 
+/// The same, twice as wide.
+fn unknown_canvas() -> &'static mut [u32] {
+    black_box(&mut [])
+}
+
 /// A camera that the caller made up.
 fn unknown_camera() -> Camera {
     let unit = || black_box(Unit::ZERO);
@@ -62,14 +67,20 @@ fn every_entry() {
     let focal_px = black_box(FocalPx::ZERO);
     black_box(Camera::orbit(&orbit, focal_px, black_box(0), black_box(0)));
 
-    let whole = Target::new(black_box(0), black_box(0), unknown_words(), unknown_words());
+    let whole = Target::new(
+        black_box(0),
+        black_box(0),
+        unknown_words(),
+        unknown_canvas(),
+    );
+    let whole = whole.and_then(|target| target.with_depth(unknown_words()));
     let band = Rect {
         left: black_box(0),
         top: black_box(0),
         right: black_box(0),
         bottom: black_box(0),
     };
-    let part = Target::band(band, unknown_words(), unknown_words());
+    let part = Target::band(band, unknown_words(), unknown_canvas());
     draw_unknown(whole.ok());
     draw_unknown(part.ok());
     black_box(frame_hash(unknown_words()));
@@ -92,6 +103,7 @@ fn draw_unknown(target: Option<Target<'_>>) {
     let quality = Quality {
         splat: black_box(SplatPx::ZERO),
         distortion: black_box(SplatPx::ZERO),
+        repair: black_box(true),
     };
     black_box(grid.radius());
     black_box(shades_len(grid.materials().len()));

@@ -2,8 +2,13 @@
 
 use core::fmt;
 
+use rhogrid_core::target::canvas_len;
+
 /// Pixels of the largest picture.
 pub const PIXELS: usize = 240 * 320;
+
+/// Words of the canvas.
+pub const CANVAS: usize = canvas_len(320);
 
 /// Words of the largest shade table: eight materials of 8192 normals.
 pub const SHADES: usize = 8 * 8192;
@@ -14,8 +19,8 @@ pub const SHADES: usize = 8 * 8192;
 pub struct Buffers {
     /// Colours, RGB565; first, so that a screen finds them aligned.
     pub colour: [u16; PIXELS],
-    /// Depths.
-    pub depth: [u16; PIXELS],
+    /// The canvas: all rows of the largest picture.
+    pub canvas: [u32; CANVAS],
     /// Shade table.
     pub shades: [u16; SHADES],
 }
@@ -25,7 +30,7 @@ impl Buffers {
     pub const fn new() -> Self {
         Self {
             colour: [0; PIXELS],
-            depth: [0; PIXELS],
+            canvas: [0; CANVAS],
             shades: [0; SHADES],
         }
     }

@@ -77,12 +77,11 @@ fn measure_all<B: Board>(board: &mut B, buffers: &'static mut Buffers) -> Result
     let grid = Grid::open(frame.asset())?;
     let Buffers {
         colour,
-        depth,
+        canvas,
         shades,
     } = buffers;
     let pixels = usize::from(settings.width) * usize::from(settings.height);
     let colour = colour.get_mut(..pixels).ok_or(TargetError::ColourLength)?;
-    let depth = depth.get_mut(..pixels).ok_or(TargetError::DepthLength)?;
     let shades_len = shades_len(grid.materials().len());
     let shades = shades
         .get_mut(..shades_len)
@@ -91,7 +90,7 @@ fn measure_all<B: Board>(board: &mut B, buffers: &'static mut Buffers) -> Result
     writeln!(board, "RHOGRID {PROTOCOL} {}", frame.views().count())?;
     check_timer(board)?;
     for (index, view) in frame.views().enumerate() {
-        let mut target = Target::new(settings.width, settings.height, colour, depth)?;
+        let mut target = Target::new(settings.width, settings.height, colour, canvas)?;
         drawn(&grid, &view.warm_up, &settings, shades, &mut target);
 
         board.paint_stack();

@@ -17,6 +17,11 @@ use crate::testing::model::Cell;
 use crate::testing::view::eye_unit;
 use crate::testing::{Exact, Model, dot};
 
+/// What sixteenths of a pixel lose in a packed place: half of one for the
+/// start, and of each of two levels one for the chunk and up to two for the
+/// steps along x and y.
+const PACKED_ROUNDING: f64 = (1.0 + 2.0 * 5.0) / 32.0;
+
 /// A value and how far it may be off.
 #[derive(Clone, Copy, Debug)]
 struct Near {
@@ -44,6 +49,8 @@ struct Leaf {
     colour: u16,
     /// Whether it is drawn without doubt.
     sure: bool,
+    /// Whether it may cover its home pixel alone.
+    may_be_point: bool,
 }
 
 /// What a comparison found.
@@ -65,7 +72,7 @@ struct View<'a> {
     /// Where depth is 65535 and 1.
     range: [f64; 2],
     eye_unit: f64,
-    /// Largest error of an affine block, pixels; none is affine at zero.
+    /// Largest error of a packed subtree, pixels; none is packed at zero.
     distortion: f64,
 }
 
@@ -183,7 +190,8 @@ impl<'a> View<'a> {
                 }
                 if !block.flags.two_sided {
                     let turned = self.turned(cell.attribute, block_centre, depth);
-                    if turned.surely_above(0.0) {
+                    // Points are drawn wherever they face.
+                    if turned.surely_above(0.0) && self.distortion == 0.0 {
                         continue;
                     }
                     sure &= !turned.maybe_above(0.0);
@@ -193,15 +201,15 @@ impl<'a> View<'a> {
             let nearest = nearest.unwrap_or((point[2] - self.reach(depth)).max(self.near));
             let mut core = self.depth(point[2], units);
             let mut place = self.place(point, units);
-            if base.1.is_some() && self.distortion > 0.0 {
-                // The bounds of `grid/leaves.rs`.
-                let rounding = 1.5 * f64::from(self.model.rho);
+            if self.distortion > 0.0 {
+                // The bounds of `plan.rs` and `grid/packed.rs`.
                 for at in &mut place {
-                    at.error += self.distortion + (rounding + 2.0) * 2f64.powi(-12);
+                    at.error += self.distortion + PACKED_ROUNDING;
                 }
-                let ratio = self.reach(depth - 1) / origin[2];
+                let above = usize::from(model.depth()).saturating_sub(2);
+                let ratio = (self.reach(above) / point[2]).min(0.5);
                 core.error +=
-                    self.depth_scaled(origin[2]) * ratio * ratio / (1.0 - ratio) + rounding + 2.0;
+                    self.depth_scaled(point[2]) * ratio * ratio / (1.0 - ratio).powi(2) + 16.0;
             }
             let drop = self.drop(origin[2], &edges, units);
             leaves.push(Leaf {
@@ -214,6 +222,7 @@ impl<'a> View<'a> {
                 },
                 colour: self.colour(cell.attribute),
                 sure,
+                may_be_point: self.distortion > 0.0,
             });
         }
         Some(leaves)
@@ -395,7 +404,11 @@ impl Leaf {
         let (core_maybe, core_sure) = within(half.value / 2.0, core_error);
         Cover {
             maybe: maybe || home_maybe,
-            sure: sure || home_sure,
+            sure: if self.may_be_point {
+                home_sure
+            } else {
+                sure || home_sure
+            },
             core_maybe: core_maybe || home_maybe,
             core_sure: core_sure || home_sure,
         }

@@ -1,0 +1,157 @@
+//! The canvas: what samples are drawn into before they become colours.
+//!
+//! A pixel is one word, depth << 16 | attribute, zero where nothing is
+//! drawn; comparing words compares depths. Rows are 256 words apart and
+//! [`GUARD`] rows lie above and below, so that the neighbourhood of any
+//! sample near the strip is a [`Window`]: 16 rows of 16 columns in one slice
+//! of constant length, which needs no test for each sample. Columns beyond
+//! the strip's are guards, too: what runs over on the right side of a row and
+//! what runs over on the left side of the next never meet, because samples
+//! keep within [`REACH`] pixels of the strip.
+
+use core::hint::black_box;
+use core::ops::Range;
+
+use crate::target::Rect;
+
+/// Words from row to row.
+pub(crate) const PITCH: usize = 256;
+/// Rows above and below the strip.
+const GUARD: usize = 16;
+/// Columns of a strip that is as wide as the picture, at most.
+pub(crate) const PICTURE_COLUMNS: u16 = 240;
+/// Columns of other strips, at most: the pixels beside them are looked at,
+/// and nothing that runs over on the other side may fall on those.
+pub(crate) const STRIP_COLUMNS: u16 = 232;
+/// How far from the strip the centre of a window may lie, pixels.
+pub(crate) const REACH: i32 = 7;
+/// Words of a window: 16 rows.
+pub(crate) const WINDOW: usize = 16 * PITCH;
+/// The window's pixel that its centre falls on, both ways.
+pub(crate) const WINDOW_CENTRE: i32 = 8;
+
+/// Sixteen rows of the canvas.
+pub(crate) type Window = [u32; WINDOW];
+
+/// Words of a canvas that takes strips of so many rows.
+pub const fn canvas_len(rows: u16) -> usize {
+    (rows as usize + 2 * GUARD + 1) * PITCH
+}
+
+/// Rows of the tallest strip that a canvas takes.
+pub(crate) const fn canvas_rows(words: usize) -> usize {
+    (words / PITCH).saturating_sub(2 * GUARD + 1)
+}
+
+/// A strip of the picture on the canvas.
+pub(crate) struct Canvas<'a> {
+    words: &'a mut [u32],
+    /// The pixels that will be seen.
+    pub strip: Rect,
+    /// Pixels on which something may have been drawn, relative to the strip.
+    touched: Touched,
+}
+
+/// First and last row and column, in this order, of what was drawn on.
+#[derive(Clone, Copy, Debug)]
+struct Touched {
+    rows: [i32; 2],
+    columns: [i32; 2],
+}
+
+impl Touched {
+    const NOTHING: Self = Self {
+        rows: [i32::MAX, i32::MIN],
+        columns: [i32::MAX, i32::MIN],
+    };
+
+    #[inline(always)]
+    fn add(&mut self, [left, right]: [i32; 2], [top, bottom]: [i32; 2]) {
+        self.rows = [self.rows[0].min(top), self.rows[1].max(bottom)];
+        self.columns = [self.columns[0].min(left), self.columns[1].max(right)];
+    }
+}
+
+impl<'a> Canvas<'a> {
+    /// A canvas for a strip, cleared.
+    pub fn new(words: &'a mut [u32], strip: Rect) -> Self {
+        let rows = strip.height() + 2 * GUARD + 1;
+        // Zeros that the compiler does not know are stored eight at a time.
+        let zeros = black_box([0; 8]);
+        let used = words.len().min(rows * PITCH);
+        let (blocks, _) = words.split_at_mut(used).0.as_chunks_mut::<64>();
+        for block in blocks {
+            for eight in block.as_chunks_mut::<8>().0 {
+                *eight = zeros;
+            }
+        }
+        Self {
+            words,
+            strip,
+            touched: Touched::NOTHING,
+        }
+    }
+
+    /// The strip's rows and columns that were drawn on, with one more around
+    /// them, as far as they lie in the strip: [first, end).
+    pub fn touched(&self) -> (Range<u16>, Range<u16>) {
+        let within = |[first, last]: [i32; 2], low: u16, size: usize| {
+            let first = (first - 1).max(0).min(size as i32);
+            let end = last.saturating_add(2).min(size as i32).max(first);
+            low + first as u16..low + end as u16
+        };
+        let strip = &self.strip;
+        (
+            within(self.touched.columns, strip.left, strip.width()),
+            within(self.touched.rows, strip.top, strip.height()),
+        )
+    }
+
+    /// The window around a pixel of the picture, at most [`REACH`] from the
+    /// strip.
+    #[inline(always)]
+    pub fn window(&mut self, column: i32, row: i32) -> Option<&mut Window> {
+        let row = row - i32::from(self.strip.top) - WINDOW_CENTRE;
+        let column = column - i32::from(self.strip.left) - WINDOW_CENTRE;
+        self.touched.add([column, column + 15], [row, row + 15]);
+        let start = ((row + GUARD as i32) * PITCH as i32 + column) as usize;
+        self.words.get_mut(start..)?.first_chunk_mut()
+    }
+
+    /// Pixels of a row from a column on.
+    #[inline(always)]
+    pub fn row(&mut self, column: i32, row: i32, columns: usize) -> Option<&mut [u32]> {
+        let row = row - i32::from(self.strip.top);
+        let column = column - i32::from(self.strip.left);
+        self.touched
+            .add([column, column + columns as i32 - 1], [row, row]);
+        let start = ((row + GUARD as i32) * PITCH as i32 + column) as usize;
+        self.words.get_mut(start..start + columns)
+    }
+
+    /// Takes away what was drawn beside the picture, which has so many columns.
+    pub fn forget_outside(&mut self, columns: u16) {
+        let width = self.strip.width();
+        let ends = [self.strip.left == 0, self.strip.right == columns];
+        for row in self.words.chunks_exact_mut(PITCH) {
+            // The pixel before a row is the last word of the one above.
+            for (is_end, column) in ends.into_iter().zip([PITCH - 1, width]) {
+                if is_end && let Some(pixel) = row.get_mut(column) {
+                    *pixel = 0;
+                }
+            }
+        }
+    }
+
+    /// Pixels of a row of the strip, with one more on either side, and those
+    /// above and below them.
+    pub fn neighbourhood(&self, columns: &Range<u16>, row: u16) -> Option<[&[u32]; 3]> {
+        let above = usize::from(row - self.strip.top) + GUARD - 1;
+        let first = usize::from(columns.start - self.strip.left);
+        let line = |row: usize| {
+            let start = row * PITCH + first - 1;
+            self.words.get(start..start + columns.len() + 2)
+        };
+        Some([line(above)?, line(above + 1)?, line(above + 2)?])
+    }
+}
