@@ -48,6 +48,15 @@ pub(super) struct Cell {
     pub centre: Point,
     /// From the eye to the centre, eye space.
     pub view: [i32; 3],
+    /// Whether it is drawn where drawing stops at its depth.
+    pub is_drawn: bool,
+}
+
+/// The two records of a cell: see [the format](crate::asset).
+#[derive(Clone, Copy)]
+struct Record<'a> {
+    node: &'a [u16],
+    drawn: &'a [u16],
 }
 
 /// Q16.16 to Q20.12 pixels; the largest values saturate.
@@ -88,6 +97,7 @@ fn run<const RHO: u8, const CELLS: usize, const LEVELS: usize>(
         first_child: 0,
         centre: tables.centre,
         view: eye_space.centre,
+        is_drawn: true,
     };
     let frame = Frame::<CELLS, LEVELS> {
         grid,
@@ -116,7 +126,10 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
         };
         match next {
             Some(next) => {
-                let record = next.nodes.get(..halves(RHO)).unwrap_or(&[]);
+                let record = Record {
+                    node: next.nodes.get(..halves(RHO)).unwrap_or(&[]),
+                    drawn: next.drawn.get(..halves(RHO)).unwrap_or(&[]),
+                };
                 self.node::<RHO>(root, record, attribute, output);
             }
             None => {
@@ -136,12 +149,14 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
     fn node<const RHO: u8>(
         &self,
         cell: &Cell,
-        record: &[u16],
+        record: Record<'_>,
         attribute: u16,
         output: &mut Output<'_, '_>,
     ) {
         output.stats.nodes_visited += 1;
-        let Some(&last) = record.last() else { return };
+        let Some(&last) = record.node.last() else {
+            return;
+        };
         let flags = Flags::from_last(RHO, last);
         let extents = self.tables.extents(cell.depth);
         let facing = cone(flags, attribute, cell.view, extents.eye_radius);
@@ -169,7 +184,9 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
         {
             output.stats.nodes_outside += 1;
         } else if 2 * projected.half[0].max(projected.half[1]) <= self.splat_side {
-            self.node_splat(cell, &projected, seen.own(attribute), output);
+            if cell.is_drawn {
+                self.node_splat(cell, &projected, seen.own(attribute), output);
+            }
         } else {
             self.descend::<RHO>(cell, record, seen, Some(&projected), output);
         }
@@ -178,13 +195,13 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
     fn descend<const RHO: u8>(
         &self,
         cell: &Cell,
-        record: &[u16],
+        record: Record<'_>,
         seen: Seen,
         projected: Option<&Projected>,
         output: &mut Output<'_, '_>,
     ) {
         if cell.depth + 1 == self.grid.depth() {
-            self.leaves::<RHO>(cell, record, seen, projected, output);
+            self.leaves::<RHO>(cell, record.drawn, seen, projected, output);
         } else {
             self.children::<RHO>(cell, record, output);
         }
@@ -207,8 +224,14 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
         self.splat(projected.place, &extent, attribute, output);
     }
 
-    /// Visits the children of a cell, all of which are intermediate.
-    fn children<const RHO: u8>(&self, cell: &Cell, record: &[u16], output: &mut Output<'_, '_>) {
+    /// Visits the children of a cell, all of which are intermediate: in file
+    /// order, first those that are drawn at their depth, then the others.
+    fn children<const RHO: u8>(
+        &self,
+        cell: &Cell,
+        record: Record<'_>,
+        output: &mut Output<'_, '_>,
+    ) {
         let table = self.tables.below(cell.depth);
         let below = usize::from(cell.depth) + 1;
         let levels = self.grid.levels();
@@ -217,39 +240,55 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
         };
         let size = halves(RHO);
         let attributes = level.attributes.get(cell.first_child..).unwrap_or(&[]);
-        let records = next.nodes.get(cell.first_child * size..).unwrap_or(&[]);
+        let first_word = cell.first_child * size;
         let mut children = attributes
             .iter()
-            .zip(records.chunks_exact(size))
+            .zip(
+                next.nodes
+                    .get(first_word..)
+                    .unwrap_or(&[])
+                    .chunks_exact(size),
+            )
+            .zip(
+                next.drawn
+                    .get(first_word..)
+                    .unwrap_or(&[])
+                    .chunks_exact(size),
+            )
             .zip(cell.first_child..);
         let mut first_child = next.links.get(cell.index).copied().unwrap_or(0) as usize;
-        let displacements = table
-            .displacements
-            .chunks(16)
-            .zip(table.eye_displacements.chunks(16));
-        for (&half, (displacements, eye_displacements)) in record.iter().zip(displacements) {
-            let mut bits = half;
-            for (displacement, eye_displacement) in displacements.iter().zip(eye_displacements) {
-                if bits & 1 != 0 {
-                    let Some(((&attribute, record), index)) = children.next() else {
-                        return;
-                    };
-                    let [x, y, z] = cell.view;
-                    let child = Cell {
-                        depth: cell.depth + 1,
-                        index,
-                        first_child,
-                        centre: cell.centre.plus(*displacement),
-                        view: [
-                            x + eye_displacement[0],
-                            y + eye_displacement[1],
-                            z + eye_displacement[2],
-                        ],
-                    };
-                    first_child += occupied(RHO, record) as usize;
-                    self.node::<RHO>(&child, record, attribute, output);
+        for is_drawn in [true, false] {
+            let displacements = table
+                .displacements
+                .chunks(16)
+                .zip(table.eye_displacements.chunks(16));
+            let masks = record.node.iter().zip(record.drawn);
+            for ((&node, &drawn), (displacements, eye_displacements)) in masks.zip(displacements) {
+                let mut bits = if is_drawn { drawn } else { node & !drawn };
+                for (displacement, eye_displacement) in displacements.iter().zip(eye_displacements)
+                {
+                    if bits & 1 != 0 {
+                        let Some((((&attribute, node), drawn), index)) = children.next() else {
+                            return;
+                        };
+                        let [x, y, z] = cell.view;
+                        let child = Cell {
+                            depth: cell.depth + 1,
+                            index,
+                            first_child,
+                            centre: cell.centre.plus(*displacement),
+                            view: [
+                                x + eye_displacement[0],
+                                y + eye_displacement[1],
+                                z + eye_displacement[2],
+                            ],
+                            is_drawn,
+                        };
+                        first_child += occupied(RHO, node) as usize;
+                        self.node::<RHO>(&child, Record { node, drawn }, attribute, output);
+                    }
+                    bits >>= 1;
                 }
-                bits >>= 1;
             }
         }
     }
