@@ -67,7 +67,7 @@ fn bunny_has_the_cells_of_an_independent_voxelization() {
     // Counts of an independent voxelization over the tight centred cube.
     let expected = [1.0, 22.0, 235.0, 2453.0, 22459.0, 202_421.0, 1_820_696.0];
     let level = 5;
-    let Some(reports) = run("bake", "bunny.ply", &format!("--level {level}")) else {
+    let Some(reports) = run("bake", "bunny.ply", &format!("--level {level} --shell fat")) else {
         return;
     };
     let cells: Vec<f64> = serde_json::from_value(reports[0]["cells_per_depth"].clone()).unwrap();
@@ -101,9 +101,11 @@ fn bunny_has_no_holes() {
 fn odd_models_are_drawn() {
     for (model, options) in [
         ("buddha_100k.ply", "--level 4 --up z"),
+        ("buddha_100k.ply", "--level 4 --up z --shell fat"),
         ("fracttree.ply", "--level 3"),
         ("fracttree.ply", "--level 3 --two-sided"),
         ("cow.ply", "--level 4"),
+        ("cow.ply", "--level 4 --shell fat"),
         ("teapot.ply", "--level 3"),
         ("teapot.ply", "--level 3 --two-sided"),
     ] {
@@ -129,6 +131,7 @@ fn prefixes_of_the_cow_are_coarser_cows() {
     let bake = |level: u8| {
         let options = rhogrid::bake::GridOptions {
             level,
+            shell: rhogrid_core::asset::Shell::Fat,
             ..Default::default()
         };
         let grid = rhogrid::bake::grid(&imported.geometry, &options, &|_| {}).unwrap();
