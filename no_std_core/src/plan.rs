@@ -37,7 +37,7 @@ const PACKED_LEVELS: usize = 2;
 /// splat of its own size.
 const POINT_PX: i64 = 5 << 14;
 /// Points of cells with longer edges are two pixels wide, pixels Q16.
-const WIDE_PX: i64 = 16 << 12;
+const WIDE_PX: i64 = 15 << 12;
 /// How much nearer a hole's neighbours are, in cells.
 const GAP_CELLS: i64 = 4;
 /// Longest focal length of which sizes are told, pixels Q8; with a longer one

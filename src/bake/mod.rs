@@ -2,10 +2,12 @@
 //! through [`writer`].
 
 mod cone;
+mod finish;
 mod overlap;
 mod points;
 mod shell;
 mod surface;
+mod thin;
 mod triangles;
 pub mod writer;
 
@@ -25,6 +27,8 @@ pub struct GridOptions {
     pub rho: u8,
     /// Level k has rho^(k + 1) cells on an axis.
     pub level: u8,
+    /// Which cells to keep.
+    pub shell: Shell,
     /// Draw every surface from both sides.
     pub two_sided: bool,
     /// Which source axis points up; the geometry is already turned, the asset
@@ -37,6 +41,7 @@ impl Default for GridOptions {
         Self {
             rho: 3,
             level: 4,
+            shell: Shell::Thin,
             two_sided: false,
             up: Up::Y,
         }
@@ -83,7 +88,7 @@ pub fn grid(
     Ok(BakedGrid {
         levels: grid,
         rho: options.rho,
-        shell: Shell::Fat,
+        shell: options.shell,
         two_sided: options.two_sided,
         up: options.up,
         cube,

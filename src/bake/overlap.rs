@@ -2,7 +2,9 @@
 //!
 //! Based on: Tomas Akenine-Moeller, Fast 3D Triangle-Box Overlap Testing,
 //! 2001 (the thirteen axes). A triangle that only touches a face, edge or
-//! corner of the box overlaps it.
+//! corner of the box overlaps it. Points, segments and needles overlap as what
+//! they are. The box may be a segment: as thick as twice the baker's slack,
+//! 1e-12 and more, far above what rounding takes from the projections, 1e-16.
 
 use super::surface::Aabb;
 use glam::DVec3;

@@ -1,4 +1,5 @@
-//! The fat shell of a surface: every cell that it touches, level by level.
+//! The shells of a surface, level by level: every cell that it touches, and
+//! which of them are [thin](super::thin).
 //!
 //! Source: Duguet and Drettakis 2003, 4.1 and 4.2. A cell's sample is the
 //! surface's point nearest to its centre. That point lies at most half a
@@ -7,11 +8,13 @@
 
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
-use rhogrid_core::asset::node::{APERTURE_ALL, Flags, halves};
+use rhogrid_core::asset::node::{APERTURE_ALL, Flags};
 use rhogrid_core::asset::{Rgb, Shell};
 use rhogrid_core::normal::encode;
 
+use super::finish::finish;
 use super::surface::{Aabb, Sample, Surface};
+use super::thin::{Standing, column, cross_hair, thin_subset};
 use super::{Cube, GridOptions, Progress, cone};
 use crate::geometry::Up;
 
@@ -42,6 +45,8 @@ pub struct BakedGrid {
 pub struct BakedLevel {
     /// Node records of the cells above.
     pub nodes: Vec<u16>,
+    /// Drawn records of the cells above, where the level stores them.
+    pub drawn: Vec<u16>,
     /// Attributes of the cells.
     pub attributes: Vec<u16>,
 }
@@ -58,10 +63,34 @@ struct Cell {
     neighbourhood: Vec<u32>,
 }
 
-/// A cell's record and children.
+/// A touched cell of a finished level.
+pub(super) struct Touched {
+    /// Which subcell of its parent it is.
+    pub bit: u8,
+    pub is_thin: bool,
+    pub attribute: u16,
+}
+
+/// A finished level: every touched cell, and what was told of those above.
+pub(super) struct TouchedLevel {
+    /// Flags of the cells above, and how many children each has.
+    pub above: Vec<(Flags, u8)>,
+    /// Children of one cell are contiguous, in the order of their bits.
+    pub cells: Vec<Touched>,
+}
+
+/// A cell's flags and children.
 struct Subdivision {
-    record: Vec<u16>,
-    children: Vec<Cell>,
+    flags: Flags,
+    children: Vec<Child>,
+}
+
+struct Child {
+    cell: Cell,
+    /// Which subcell it is.
+    bit: u8,
+    /// Nobody asks in a fat shell.
+    standing: Option<Standing>,
 }
 
 struct Baker<'a, S> {
@@ -79,9 +108,13 @@ pub(super) fn bake<S: Surface>(
     let baker = Baker { surface, options };
     let everything: Vec<u32> = (0..surface.count()).collect();
     let attribute = baker.attribute(DVec3::ZERO, &everything);
-    let mut levels = vec![BakedLevel {
-        nodes: Vec::new(),
-        attributes: vec![attribute],
+    let mut levels = vec![TouchedLevel {
+        above: Vec::new(),
+        cells: vec![Touched {
+            bit: 0,
+            is_thin: true,
+            attribute,
+        }],
     }];
     let mut cells = vec![Cell {
         place: [0; 3],
@@ -106,19 +139,31 @@ pub(super) fn bake<S: Surface>(
                 done
             })
             .collect();
-        levels.push(BakedLevel {
-            nodes: done
+        let children = || done.iter().flat_map(|cell| &cell.children);
+        let standings: Vec<([u32; 3], Standing)> = children()
+            .filter_map(|child| Some((child.cell.place, child.standing?)))
+            .collect();
+        let mut thin = thin_subset(&standings).into_iter();
+        levels.push(TouchedLevel {
+            above: done
                 .iter()
-                .flat_map(|cell| cell.record.iter().copied())
+                .map(|cell| (cell.flags, cell.children.len() as u8))
                 .collect(),
-            attributes: done
-                .iter()
-                .flat_map(|cell| cell.children.iter().map(|child| child.attribute))
+            cells: children()
+                .map(|child| Touched {
+                    bit: child.bit,
+                    is_thin: thin.next().unwrap_or(true),
+                    attribute: child.cell.attribute,
+                })
                 .collect(),
         });
-        cells = done.into_iter().flat_map(|cell| cell.children).collect();
+        cells = done
+            .into_iter()
+            .flat_map(|cell| cell.children)
+            .map(|child| child.cell)
+            .collect();
     }
-    levels
+    finish(options.rho, options.shell, &levels)
 }
 
 impl<S: Surface> Baker<'_, S> {
@@ -130,7 +175,6 @@ impl<S: Surface> Baker<'_, S> {
             .iter()
             .map(|&primitive| (primitive, self.surface.bounds(primitive)))
             .collect();
-        let mut record = vec![0u16; halves(self.options.rho)];
         let mut children = Vec::new();
         let mut two_sided = self.options.two_sided;
         for bit in 0..rho.pow(3) {
@@ -147,7 +191,6 @@ impl<S: Surface> Baker<'_, S> {
             }) {
                 continue;
             }
-            record[bit as usize / 16] |= 1 << (bit % 16);
             let centre = bounds.min.midpoint(bounds.max);
             let (primitive, sample) = self.nearest(centre, &near);
             // A file cut behind this level has these children as its leaves.
@@ -156,7 +199,11 @@ impl<S: Surface> Baker<'_, S> {
                 let faces = self.faces(&near, &bounds);
                 two_sided = cone::needs_both_sides(sample.normal, own, faces);
             }
-            children.push(Cell {
+            let standing = (self.options.shell == Shell::Thin).then(|| Standing {
+                crossed: self.crossed(&near, &bounds, slack(axis)),
+                column: column(self.surface.facing(primitive).unwrap_or(sample.normal)),
+            });
+            let cell = Cell {
                 place,
                 attribute: attribute(&sample),
                 neighbourhood: if leaves {
@@ -164,6 +211,11 @@ impl<S: Surface> Baker<'_, S> {
                 } else {
                     near.iter().map(|&(primitive, _)| primitive).collect()
                 },
+            };
+            children.push(Child {
+                cell,
+                bit: bit as u8,
+                standing,
             });
         }
         let own = boxes(cell.place, axis / rho).0;
@@ -175,10 +227,16 @@ impl<S: Surface> Baker<'_, S> {
             aperture,
             two_sided,
         };
-        if let Some(last) = record.last_mut() {
-            *last |= flags.to_last(self.options.rho);
-        }
-        Subdivision { record, children }
+        Subdivision { flags, children }
+    }
+
+    /// Which segments of a cell's cross-hair the surface meets.
+    fn crossed(&self, near: &[(u32, Aabb)], cell: &Aabb, slack: f64) -> [bool; 3] {
+        cross_hair(cell, slack).map(|segment| {
+            near.iter().any(|&(primitive, own)| {
+                own.meets(&segment) && self.surface.touches(primitive, &segment)
+            })
+        })
     }
 
     /// The directions of the faces that touch a cell.
@@ -225,6 +283,12 @@ impl<S: Surface> Baker<'_, S> {
     }
 }
 
+/// How far a surface may pass beside a cell and still touch it. Coordinates
+/// are below one: rounding errs by some 1e-16.
+fn slack(axis: u32) -> f64 {
+    SLACK * f64::from(axis).log2().ceil()
+}
+
 /// A cell's box with its slack, and the box around the ball through its
 /// corners.
 fn boxes(place: [u32; 3], axis: u32) -> (Aabb, Aabb) {
@@ -235,8 +299,7 @@ fn boxes(place: [u32; 3], axis: u32) -> (Aabb, Aabb) {
         min: corner(0),
         max: corner(1),
     };
-    // Coordinates are below one: rounding errs by some 1e-16.
-    let slack = SLACK * f64::from(axis).log2().ceil();
+    let slack = slack(axis);
     let cell = Aabb {
         min: cell.min - slack,
         max: cell.max + slack,

@@ -144,6 +144,7 @@ fn levels(grid: &BakedGrid) -> Vec<Vec<u8>> {
             first = end;
         }
         extend_padded(&mut bytes, &level.nodes);
+        extend_padded(&mut bytes, &level.drawn);
         extend_padded(&mut bytes, &level.attributes);
         sections.push(bytes);
         above = own;

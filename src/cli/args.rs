@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use clap::{Args, ValueEnum};
 use glam::DVec3;
-use rhogrid_core::asset::max_depth;
+use rhogrid_core::asset::{Shell, max_depth};
 
 use super::Failure;
 use crate::bake::GridOptions;
@@ -23,6 +23,17 @@ pub enum Representation {
 pub enum ShellChoice {
     /// Every cell that the surface touches
     Fat,
+    /// A subset through which nothing slips, about half of them
+    Thin,
+}
+
+impl From<ShellChoice> for Shell {
+    fn from(choice: ShellChoice) -> Self {
+        match choice {
+            ShellChoice::Fat => Self::Fat,
+            ShellChoice::Thin => Self::Thin,
+        }
+    }
 }
 
 /// How wide a sample's attribute is.
@@ -45,9 +56,9 @@ pub struct SourceArgs {
     /// Level K has rho^(K + 1) cells on an axis [default: 4]
     #[arg(long, value_name = "K", allow_negative_numbers = true)]
     pub level: Option<u8>,
-    /// Which cells to keep
-    #[arg(long, value_enum, default_value = "fat")]
-    pub shell: ShellChoice,
+    /// Which cells to keep [default: thin]
+    #[arg(long, value_enum)]
+    pub shell: Option<ShellChoice>,
     /// Which source axis points up [default: y]
     #[arg(long, value_enum)]
     pub up: Option<Up>,
@@ -83,6 +94,7 @@ impl SourceArgs {
         let given = [
             ("--rho", self.rho.is_some()),
             ("--level", self.level.is_some()),
+            ("--shell", self.shell.is_some()),
             ("--up", self.up.is_some()),
             ("--two-sided", self.two_sided),
         ];
@@ -101,6 +113,7 @@ impl SourceArgs {
         GridOptions {
             rho: self.rho.unwrap_or(defaults.rho),
             level: self.level.unwrap_or(defaults.level),
+            shell: self.shell.map_or(defaults.shell, Shell::from),
             two_sided: self.two_sided,
             up: self.up.unwrap_or(defaults.up),
         }

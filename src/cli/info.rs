@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use rhogrid_core::asset::Shell;
+use rhogrid_core::asset::node::{halves, occupied};
+use rhogrid_core::asset::{Grid, Shell};
 use serde::Serialize;
 
 use super::Failure;
@@ -31,7 +32,10 @@ pub struct Description {
     shell: &'static str,
     two_sided: bool,
     up: &'static str,
+    /// Stored cells.
     cells_per_depth: Vec<usize>,
+    /// Those that are drawn where drawing stops at their depth.
+    drawn_cells_per_depth: Vec<usize>,
     /// Non-empty subcells of an intermediate cell, in the mean.
     alpha: Option<f64>,
     materials: Vec<[u8; 3]>,
@@ -40,8 +44,55 @@ pub struct Description {
     radius: f64,
     attribute_bits: u8,
     bytes_total: usize,
-    /// Everything counted: masks, links, attributes, tables, header.
+    bytes: ByteCounts,
+    /// Everything counted: masks, links, attributes, tables, header. A leaf
+    /// sample is a drawn cell of the finest level.
     bits_per_leaf_sample: f64,
+}
+
+/// Where an asset's bytes go.
+#[derive(Debug, Serialize)]
+struct ByteCounts {
+    links: usize,
+    /// Node records: occupancy, cones.
+    masks: usize,
+    /// Drawn records, where a level has some of its own.
+    drawn_masks: usize,
+    attributes: usize,
+    /// Header, section table, materials, counts and padding.
+    rest: usize,
+}
+
+impl ByteCounts {
+    fn of(grid: &Grid<'_>, total: usize) -> Self {
+        let levels = || grid.levels().iter();
+        let words = |of: &[u16]| 2 * of.len();
+        let links = levels().map(|level| 4 * level.links.len()).sum();
+        let masks = levels().map(|level| words(level.nodes)).sum();
+        let drawn_masks = (0..)
+            .zip(levels())
+            .filter(|&(depth, _)| grid.stores_drawn(depth))
+            .map(|(_, level)| words(level.drawn))
+            .sum();
+        let attributes = levels().map(|level| words(level.attributes)).sum();
+        Self {
+            links,
+            masks,
+            drawn_masks,
+            attributes,
+            rest: total - links - masks - drawn_masks - attributes,
+        }
+    }
+}
+
+/// Drawn cells of every depth; the root is one.
+fn drawn_cells(grid: &Grid<'_>) -> Vec<usize> {
+    let rho = grid.rho();
+    let below = grid.levels().iter().skip(1).map(|level| {
+        let records = level.drawn.chunks_exact(halves(rho));
+        records.map(|record| occupied(rho, record) as usize).sum()
+    });
+    std::iter::once(1).chain(below).collect()
 }
 
 impl Description {
@@ -49,9 +100,10 @@ impl Description {
     pub fn of(asset: &AssetFile) -> Self {
         let grid = asset.grid();
         let cells: Vec<usize> = grid.levels().iter().map(|level| level.cells()).collect();
+        let drawn = drawn_cells(&grid);
         let all: usize = cells.iter().sum();
-        let leaves = cells.last().copied().unwrap_or(1);
-        let intermediate = all - leaves;
+        let intermediate = all - cells.last().copied().unwrap_or(1);
+        let leaves = drawn.last().copied().unwrap_or(1).max(1);
         let cube = asset.cube();
         Self {
             kind: "grid",
@@ -66,12 +118,14 @@ impl Description {
             up: asset.up().name(),
             alpha: (intermediate > 0).then(|| (all - 1) as f64 / intermediate as f64),
             cells_per_depth: cells,
+            drawn_cells_per_depth: drawn,
             materials: grid.materials().to_vec(),
             centre: cube.centre.to_array(),
             half_side: cube.half_side,
             radius: cube.radius,
             attribute_bits: 16,
             bytes_total: asset.bytes().len(),
+            bytes: ByteCounts::of(&grid, asset.bytes().len()),
             bits_per_leaf_sample: asset.bytes().len() as f64 * 8.0 / leaves as f64,
         }
     }
@@ -79,11 +133,12 @@ impl Description {
     /// One line for people.
     pub fn summary(&self) -> String {
         format!(
-            "{} rho {} level {}, {} leaf samples, {} bytes, {:.2} bits a leaf sample",
+            "{} rho {} level {}, {} shell, {} leaf samples, {} bytes, {:.2} bits a leaf sample",
             self.kind,
             self.rho,
             self.level,
-            self.cells_per_depth.last().unwrap_or(&0),
+            self.shell,
+            self.drawn_cells_per_depth.last().unwrap_or(&0),
             self.bytes_total,
             self.bits_per_leaf_sample
         )
@@ -117,6 +172,15 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
     super::say(format_args!(
         "cells      {:?} by depth",
         description.cells_per_depth
+    ))?;
+    super::say(format_args!(
+        "drawn      {:?} where drawing stops at a depth",
+        description.drawn_cells_per_depth
+    ))?;
+    let bytes = &description.bytes;
+    super::say(format_args!(
+        "bytes      {} links, {} masks, {} drawn masks, {} attributes, {} rest",
+        bytes.links, bytes.masks, bytes.drawn_masks, bytes.attributes, bytes.rest
     ))?;
     if let Some(alpha) = description.alpha {
         super::say(format_args!(

@@ -9,6 +9,8 @@ pub struct Cell {
     /// Column, row and slice, from 0.
     pub place: [u32; 3],
     pub attribute: u16,
+    /// Whether it is drawn where drawing stops at its depth.
+    pub is_drawn: bool,
     /// The node record that subdivides it; none at the last depth.
     pub record: Vec<u16>,
     /// Its children's indices in the next depth.
@@ -27,18 +29,31 @@ pub fn cells(grid: &Grid<'_>) -> Vec<Vec<Cell>> {
     let mut depths: Vec<Vec<Cell>> = Vec::new();
     for level in grid.levels() {
         let mut places = Vec::new();
+        let mut are_drawn = Vec::new();
         match depths.last_mut() {
-            None => places.push([0; 3]),
+            None => {
+                places.push([0; 3]);
+                are_drawn.push(true);
+            }
             Some(parents) => {
                 let records = level.nodes.chunks_exact(halves(grid.rho()));
+                let drawn = level.drawn.chunks_exact(halves(grid.rho()));
                 assert_eq!(records.len(), parents.len());
-                for (parent, record) in parents.iter_mut().zip(records) {
+                assert_eq!(drawn.len(), parents.len());
+                for ((parent, record), drawn) in parents.iter_mut().zip(records).zip(drawn) {
                     let first = places.len();
-                    for bit in (0..rho.pow(3))
-                        .filter(|bit| record[*bit as usize / 16] >> (bit % 16) & 1 == 1)
-                    {
-                        let within = [bit % rho, bit / rho % rho, bit / (rho * rho)];
-                        places.push([0, 1, 2].map(|axis| parent.place[axis] * rho + within[axis]));
+                    let has = |of: &[u16], bit: u32| of[bit as usize / 16] >> (bit % 16) & 1 == 1;
+                    // Drawn children come first.
+                    for is_drawn in [true, false] {
+                        for bit in (0..rho.pow(3))
+                            .filter(|&bit| has(record, bit) && has(drawn, bit) == is_drawn)
+                        {
+                            let within = [bit % rho, bit / rho % rho, bit / (rho * rho)];
+                            places.push(
+                                [0, 1, 2].map(|axis| parent.place[axis] * rho + within[axis]),
+                            );
+                            are_drawn.push(is_drawn);
+                        }
                     }
                     parent.children = first..places.len();
                     parent.record = record.to_vec();
@@ -46,11 +61,12 @@ pub fn cells(grid: &Grid<'_>) -> Vec<Vec<Cell>> {
             }
         }
         assert_eq!(places.len(), level.attributes.len());
-        let own = places.iter().zip(level.attributes);
+        let own = places.iter().zip(level.attributes).zip(are_drawn);
         depths.push(
-            own.map(|(&place, &attribute)| Cell {
+            own.map(|((&place, &attribute), is_drawn)| Cell {
                 place,
                 attribute,
+                is_drawn,
                 record: Vec::new(),
                 children: 0..0,
             })
@@ -62,8 +78,19 @@ pub fn cells(grid: &Grid<'_>) -> Vec<Vec<Cell>> {
 
 /// The places of every depth, sorted.
 pub fn places(grid: &Grid<'_>) -> Vec<Vec<[u32; 3]>> {
+    sorted(grid, |_| true)
+}
+
+/// The places of the cells that are drawn where drawing stops at their depth,
+/// of every depth, sorted.
+pub fn drawn_places(grid: &Grid<'_>) -> Vec<Vec<[u32; 3]>> {
+    sorted(grid, |cell| cell.is_drawn)
+}
+
+fn sorted(grid: &Grid<'_>, which: impl Fn(&Cell) -> bool) -> Vec<Vec<[u32; 3]>> {
     let sorted = |depth: &Vec<Cell>| {
-        let mut places: Vec<[u32; 3]> = depth.iter().map(|cell| cell.place).collect();
+        let chosen = depth.iter().filter(|cell| which(cell));
+        let mut places: Vec<[u32; 3]> = chosen.map(|cell| cell.place).collect();
         places.sort_unstable();
         places
     };

@@ -8,7 +8,7 @@ use rhogrid::geometry::{Cloud, Geometry, Mesh, OrientedPoint};
 use rhogrid::import::procedural::shapes;
 
 use super::cells::{cells, places};
-use super::{Random, baked, moved, options, soup};
+use super::{Random, baked, moved, options, soup, thin};
 
 /// A shape on a lattice of 2^-20, so that moving it far away is exact.
 fn lattice_torus() -> Mesh {
@@ -80,6 +80,13 @@ fn one_triangle_of_any_shape_makes_an_asset() {
             assert!(
                 leaves >= axis,
                 "{name}, rho {rho}: {leaves} leaves across {axis}"
+            );
+            // Thin shells are as long, from end to end.
+            let asset = baked(&soup(&[triangle]), &thin(rho, level));
+            let leaves = asset.grid().levels().last().unwrap().cells();
+            assert!(
+                leaves >= axis,
+                "{name}, rho {rho}: {leaves} thin leaves across {axis}"
             );
         }
     }
@@ -175,6 +182,9 @@ fn random_triangles_open_at_every_depth() {
                     .flatten()
                     .all(|cell| cell.record.is_empty() || !cell.children.is_empty())
             );
+            let asset = baked(&mesh, &thin(rho, level));
+            let leaves = cells(&asset.grid()).pop().unwrap();
+            assert!(!leaves.is_empty() && leaves.iter().all(|leaf| leaf.is_drawn));
         }
     }
 }

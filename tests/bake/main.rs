@@ -6,18 +6,29 @@ mod cones;
 mod counts;
 mod extremes;
 mod prefix;
+mod thin;
 mod twin;
 
 use glam::{DVec3, Vec3};
 use rhogrid::asset_file::AssetFile;
 use rhogrid::bake::{self, GridOptions, writer};
 use rhogrid::geometry::{Geometry, Material, Mesh, Triangle};
+use rhogrid_core::asset::Shell;
 
+/// A fat shell.
 fn options(rho: u8, level: u8) -> GridOptions {
     GridOptions {
         rho,
         level,
+        shell: Shell::Fat,
         ..GridOptions::default()
+    }
+}
+
+fn thin(rho: u8, level: u8) -> GridOptions {
+    GridOptions {
+        shell: Shell::Thin,
+        ..options(rho, level)
     }
 }
 

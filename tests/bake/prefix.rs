@@ -1,11 +1,16 @@
 //! Progressive loading: bytes up to the end of a level are the coarser model.
 
 use rhogrid::asset_file::AssetFile;
+use rhogrid::cli::draw_frame;
 use rhogrid::geometry::Mesh;
 use rhogrid::import::procedural::shapes;
 use rhogrid_core::asset::{AssetError, HEADER_BYTES, SECTION_BYTES, SECTION_LEVEL};
+use rhogrid_core::camera::{Camera, Orbit};
+use rhogrid_core::draw::{Light, Quality};
+use rhogrid_core::numbers::{FocalPx, Length, SplatPx, Turns, Unit, Weight};
 
-use super::{baked, options, plate};
+use super::cells::cells;
+use super::{baked, options, plate, thin};
 
 fn word(bytes: &[u8], at: usize) -> usize {
     u32::from_le_bytes(bytes[at..at + 4].try_into().unwrap()) as usize
@@ -55,25 +60,91 @@ fn every_level_boundary_ends_a_coarser_model() {
     }
 }
 
+/// Of every depth, in file order: places and attributes of what is drawn.
+fn drawn(asset: &AssetFile) -> Vec<Vec<([u32; 3], u16)>> {
+    let of = |depth: Vec<super::cells::Cell>| {
+        let drawn = depth.into_iter().filter(|cell| cell.is_drawn);
+        drawn.map(|cell| (cell.place, cell.attribute)).collect()
+    };
+    cells(&asset.grid()).into_iter().map(of).collect()
+}
+
+/// Colours and depths of a view.
+fn picture(asset: &AssetFile, yaw: f64, distance: f64, splat: u16) -> (Vec<u16>, Vec<u16>) {
+    let orbit = Orbit {
+        yaw: Turns::from_bits((yaw / 360.0 * 2f64.powi(32)) as u32),
+        pitch: Turns::from_bits(1 << 27),
+        distance: Length::from_num(distance),
+    };
+    let camera = Camera::orbit(&orbit, FocalPx::from_num(80), 60, 80);
+    let light = Light {
+        towards: [Unit::ZERO, Unit::ZERO, Unit::ONE],
+        ambient: Weight::lit("0.2"),
+        diffuse: Weight::lit("0.8"),
+    };
+    let quality = Quality {
+        splat: SplatPx::from_num(splat),
+        ..Quality::default()
+    };
+    let frame = draw_frame(&asset.grid(), &camera, &light, &quality, 1);
+    (frame.colour, frame.depth)
+}
+
+fn check_thin(mesh: &Mesh, rho: u8, level: u8) {
+    let whole = baked(mesh, &thin(rho, level));
+    for (depth, &end) in level_ends(whole.bytes()).iter().enumerate().skip(1) {
+        let cut = AssetFile::new(&whole.bytes()[..end]).unwrap();
+        assert_eq!(usize::from(cut.grid().depth()), depth);
+        let coarse = baked(mesh, &thin(rho, depth as u8 - 1));
+        let (own, want) = (drawn(&cut), drawn(&coarse));
+        for (own, want) in own.iter().zip(&want) {
+            let sorted = |cells: &[([u32; 3], u16)]| {
+                let mut cells = cells.to_vec();
+                cells.sort_unstable();
+                cells
+            };
+            assert!(sorted(own) == sorted(want), "rho {rho}, depth {depth}");
+        }
+        for (yaw, distance, splat) in [(20.0, 3.5, 0), (130.0, 3.0, 1), (250.0, 9.0, 6)] {
+            let own = picture(&cut, yaw, distance, splat);
+            assert!(
+                own == picture(&coarse, yaw, distance, splat),
+                "rho {rho}, depth {depth}, yaw {yaw}"
+            );
+        }
+    }
+}
+
+#[test]
+fn every_level_boundary_of_a_thin_shell_ends_a_coarser_model() {
+    for (rho, level) in [(2, 5), (3, 3), (4, 2), (5, 1)] {
+        check_thin(&shapes::torus(24, 12), rho, level);
+        check_thin(&plate(0.05), rho, level);
+        check_thin(&shapes::quad(), rho, level);
+    }
+}
+
 #[test]
 fn every_other_cut_is_an_error() {
     for (rho, level) in [(2, 2), (3, 1), (4, 0), (5, 0)] {
-        let whole = baked(&shapes::torus(12, 6), &options(rho, level));
-        let bytes = whole.bytes();
-        let ends = level_ends(bytes);
-        for length in (0..bytes.len()).filter(|length| !ends.contains(length)) {
-            let error = AssetFile::new(&bytes[..length]).unwrap_err();
-            assert!(
-                matches!(error, AssetError::Truncated { length: at } if at as usize == length),
-                "rho {rho}, {length} bytes: {error}"
-            );
-        }
-        for more in 1..9 {
-            let longer = [bytes, &vec![0; more]].concat();
-            assert!(
-                AssetFile::new(&longer).is_err(),
-                "{more} bytes behind the end"
-            );
+        for options in [options(rho, level), thin(rho, level)] {
+            let whole = baked(&shapes::torus(12, 6), &options);
+            let bytes = whole.bytes();
+            let ends = level_ends(bytes);
+            for length in (0..bytes.len()).filter(|length| !ends.contains(length)) {
+                let error = AssetFile::new(&bytes[..length]).unwrap_err();
+                assert!(
+                    matches!(error, AssetError::Truncated { length: at } if at as usize == length),
+                    "rho {rho}, {length} bytes: {error}"
+                );
+            }
+            for more in 1..9 {
+                let longer = [bytes, &vec![0; more]].concat();
+                assert!(
+                    AssetFile::new(&longer).is_err(),
+                    "{more} bytes behind the end"
+                );
+            }
         }
     }
 }

@@ -12,9 +12,9 @@ use super::{Random, baked, moved, options, plate, soup};
 
 /// A surface that comes nearer to a cell than this touches it; the shapes
 /// here leave nothing between this and rounding.
-const TOUCH: f64 = 1e-9;
+pub const TOUCH: f64 = 1e-9;
 /// Nearest points that differ less are equally near.
-const TIE: f64 = 1e-9;
+pub const TIE: f64 = 1e-9;
 /// The largest angle between a direction and its code's: 1 - cosine 9.7e-4.
 const CODE_COSINE: f64 = 1.0 - 9.7e-4;
 
@@ -76,7 +76,7 @@ pub fn touches(corners: &[DVec3; 3], (min, max): (DVec3, DVec3), grown: f64) -> 
 }
 
 /// Distance of a face's nearest point, and the normal there.
-fn nearest(face: &Face, point: DVec3) -> (f64, DVec3) {
+pub fn nearest(face: &Face, point: DVec3) -> (f64, DVec3) {
     let [a, b, c] = face.corners;
     let area = |a: DVec3, b: DVec3, c: DVec3, normal: DVec3| (b - a).cross(c - a).dot(normal);
     let normal = (b - a).cross(c - a);
@@ -129,7 +129,7 @@ pub fn decoded(attribute: u16) -> DVec3 {
 }
 
 /// The attribute is that of one of the nearest points.
-fn check_sample(faces: &[Face], place: [u32; 3], axis: u32, attribute: u16) {
+pub fn check_sample(faces: &[Face], place: [u32; 3], axis: u32, attribute: u16) {
     let (min, max) = bounds(place, axis);
     let centre = (min + max) / 2.0;
     let all: Vec<(f64, DVec3, u8)> = faces
@@ -195,7 +195,7 @@ fn check(name: &str, mesh: &Mesh, rho: u8, level: u8) {
 }
 
 /// A torus of eight materials, turned so that nothing lies on a boundary.
-fn torus() -> Mesh {
+pub fn torus() -> Mesh {
     let mut mesh = shapes::torus(10, 7);
     let turn = glam::DQuat::from_euler(glam::EulerRot::XYZ, 0.3, 0.7, 0.2);
     mesh = moved(&mesh, |position| turn * position);
@@ -209,7 +209,7 @@ fn torus() -> Mesh {
     mesh
 }
 
-const LEVELS: [(u8, u8); 4] = [(2, 3), (3, 2), (4, 1), (5, 1)];
+pub const LEVELS: [(u8, u8); 4] = [(2, 3), (3, 2), (4, 1), (5, 1)];
 
 #[test]
 fn curved_shapes_have_the_twins_cells_and_samples() {

@@ -1,16 +1,18 @@
 //! `rhogrid bake` and `rhogrid info`.
 
 use rhogrid::asset_file::AssetFile;
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::{Folder, assert_keys};
 
 #[test]
 fn info_tells_what_bake_told() {
     let folder = Folder::new();
-    let told = folder.json("bake cube.obj -o a.rho --rho 2 --level 3");
+    let told = folder.json("bake cube.obj -o a.rho --rho 2 --level 3 --shell fat");
     let info = folder.json("info a.rho");
     assert_eq!(told, info);
+    assert_eq!(info["shell"], "fat");
+    assert_eq!(info["drawn_cells_per_depth"], info["cells_per_depth"]);
     let keys = [
         "kind",
         "rho",
@@ -42,6 +44,73 @@ fn info_tells_what_bake_told() {
     let radius = (1.0f64 + 1.5 * 1.5 + 0.25).sqrt();
     assert!((info["radius"].as_f64().unwrap() - radius).abs() < 1e-6);
     assert!(AssetFile::new(&bytes).is_ok());
+}
+
+#[test]
+fn thin_is_the_default_and_counted_in_full() {
+    let folder = Folder::new();
+    let info = folder.json("bake builtin:demo -o a.rho --level 2");
+    folder.done("bake builtin:demo -o thin.rho --level 2 --shell thin");
+    let fat = folder.json("bake builtin:demo -o fat.rho --level 2 --shell fat");
+    let bytes = std::fs::read(folder.path("a.rho")).unwrap();
+    assert!(bytes == std::fs::read(folder.path("thin.rho")).unwrap());
+    assert_eq!(
+        (&info["shell"], &fat["shell"]),
+        (&json!("thin"), &json!("fat"))
+    );
+    let numbers =
+        |of: &Value, key: &str| -> Vec<u64> { serde_json::from_value(of[key].clone()).unwrap() };
+    let cells = numbers(&info, "cells_per_depth");
+    let drawn = numbers(&info, "drawn_cells_per_depth");
+    let all = numbers(&fat, "cells_per_depth");
+    assert!(
+        drawn[1..]
+            .iter()
+            .zip(&all[1..])
+            .all(|(drawn, all)| drawn < all)
+    );
+    assert_eq!((drawn[0], drawn[3]), (1, cells[3]));
+    assert!(
+        drawn
+            .iter()
+            .zip(&cells)
+            .all(|(drawn, cells)| drawn <= cells)
+    );
+    let bits = info["bits_per_leaf_sample"].as_f64().unwrap();
+    assert!((bits - 8.0 * bytes.len() as f64 / drawn[3] as f64).abs() < 1e-9);
+    // Links, masks, drawn masks of depths 1 and 2, attributes.
+    let parts = |of: &Value| -> [u64; 5] {
+        ["links", "masks", "drawn_masks", "attributes", "rest"]
+            .map(|part| of["bytes"][part].as_u64().unwrap())
+    };
+    let [links, masks, drawn_masks, attributes, rest] = parts(&info);
+    assert_eq!(links, 4 * (1 + cells[0] + cells[1]));
+    assert_eq!(masks, 4 * (cells[0] + cells[1] + cells[2]));
+    assert_eq!(drawn_masks, 4 * (cells[0] + cells[1]));
+    assert_eq!(attributes, 2 * cells.iter().sum::<u64>());
+    assert_eq!(
+        links + masks + drawn_masks + attributes + rest,
+        bytes.len() as u64
+    );
+    assert_eq!(parts(&fat)[2], 0);
+    // Where the file is cut, cells that are not drawn are no leaf samples.
+    folder.write("cut.rho", &bytes[..level_end(&bytes, 2)]);
+    let cut = folder.json("info cut.rho");
+    assert_eq!(numbers(&cut, "drawn_cells_per_depth"), drawn[..3]);
+    let bits = cut["bits_per_leaf_sample"].as_f64().unwrap();
+    assert!((bits - cut["bytes_total"].as_f64().unwrap() * 8.0 / drawn[2] as f64).abs() < 1e-9);
+    let text = folder.done("info a.rho");
+    assert!(
+        text.contains("thin shell") && text.contains("drawn masks"),
+        "{text}"
+    );
+}
+
+/// Where the level of a depth ends; materials stand before the levels.
+fn level_end(bytes: &[u8], depth: usize) -> usize {
+    let entry = 64 + 16 * (depth + 1);
+    let word = |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().unwrap()) as usize;
+    word(entry + 4) + word(entry + 8)
 }
 
 #[test]
@@ -129,10 +198,7 @@ fn a_prefix_is_a_coarser_model() {
     let folder = Folder::new();
     let whole = folder.json("bake cube.obj -o whole.rho --level 2");
     let bytes = std::fs::read(folder.path("whole.rho")).unwrap();
-    // The last section's offset is where the level before it ends.
-    let entry = 64 + 16 * (usize::from(bytes[15]) - 1);
-    let end = u32::from_le_bytes(bytes[entry + 4..entry + 8].try_into().unwrap()) as usize;
-    folder.write("cut.rho", &bytes[..end]);
+    folder.write("cut.rho", &bytes[..level_end(&bytes, 2)]);
     let cut = folder.json("info cut.rho");
     assert_eq!(
         (&cut["level"], &cut["stored_level"]),
@@ -176,17 +242,21 @@ fn a_prefix_of_a_plate_draws_like_its_coarse_bake() {
     let corners: String = (0..8).map(corner).collect();
     let faces = "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
     folder.write("plate.obj", corners + faces);
-    folder.done("bake plate.obj -o fine.rho --level 4");
-    folder.done("bake plate.obj -o coarse.rho --level 1");
-    let fine = std::fs::read(folder.path("fine.rho")).unwrap();
-    let coarse = std::fs::read(folder.path("coarse.rho")).unwrap();
-    // The coarse file lacks the table entries of three levels.
-    folder.write("cut.rho", &fine[..coarse.len() + 3 * 16]);
-    for yaw in [0, 90, 150, 180, 270] {
-        let hash = |name: &str| {
-            let line = format!("render {name} -o a.png --size 60x80 --yaw {yaw}");
-            folder.json(&line)["frame_hash"].clone()
-        };
-        assert_eq!(hash("cut.rho"), hash("coarse.rho"), "yaw {yaw}");
+    for shell in ["fat", "thin"] {
+        folder.done(&format!(
+            "bake plate.obj -o fine.rho --level 4 --shell {shell}"
+        ));
+        folder.done(&format!(
+            "bake plate.obj -o coarse.rho --level 1 --shell {shell}"
+        ));
+        let fine = std::fs::read(folder.path("fine.rho")).unwrap();
+        folder.write("cut.rho", &fine[..level_end(&fine, 2)]);
+        for yaw in [0, 90, 150, 180, 270] {
+            let hash = |name: &str| {
+                let line = format!("render {name} -o a.png --size 60x80 --yaw {yaw}");
+                folder.json(&line)["frame_hash"].clone()
+            };
+            assert_eq!(hash("cut.rho"), hash("coarse.rho"), "{shell}, yaw {yaw}");
+        }
     }
 }

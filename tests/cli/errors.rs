@@ -295,7 +295,13 @@ fn inputs_are_not_replaced_and_links_stay_links() {
     is_wrong_usage(&folder, "bake cube.obj -o cube.obj");
     is_wrong_usage(&folder, "render cube.obj -o cube.png.jpg");
     folder.done("bake cube.obj -o cube.rho --level 1");
-    for options in ["--rho 2", "--level 1", "--up y", "--two-sided"] {
+    for options in [
+        "--rho 2",
+        "--level 1",
+        "--shell fat",
+        "--up y",
+        "--two-sided",
+    ] {
         is_wrong_usage(&folder, &format!("render cube.rho -o out.png {options}"));
     }
     #[cfg(unix)]

@@ -1,5 +1,5 @@
 //! Frames of built-in geometry, exact to the bit: the same integers give the
-//! same pixels everywhere, so there is no tolerance.
+//! same pixels everywhere, so there is no tolerance. All shells are fat.
 //!
 //! `frames/<case>.png` shows what a case draws and `frames/hashes.txt` pins
 //! the frame hashes. On failure the actual picture and the difference, four
@@ -16,6 +16,7 @@ use std::sync::LazyLock;
 use rhogrid::asset_file::AssetFile;
 use rhogrid::bake::{self, GridOptions, writer};
 use rhogrid::cli::{Frame, draw_frame};
+use rhogrid_core::asset::Shell;
 use rhogrid_core::draw::{draw, shades_len};
 use rhogrid_core::stats::Stats;
 use rhogrid_core::target::{Rect, Target, canvas_len};
@@ -44,6 +45,7 @@ fn bake_case(case: &Case) -> AssetFile {
     let options = GridOptions {
         rho: case.rho,
         level: case.level,
+        shell: Shell::Fat,
         two_sided: case.two_sided,
         ..GridOptions::default()
     };

@@ -67,7 +67,7 @@ fn bunny_has_the_cells_of_an_independent_voxelization() {
     // Counts of an independent voxelization over the tight centred cube.
     let expected = [1.0, 22.0, 235.0, 2453.0, 22459.0, 202_421.0, 1_820_696.0];
     let level = 5;
-    let Some(reports) = run("bake", "bunny.ply", &format!("--level {level}")) else {
+    let Some(reports) = run("bake", "bunny.ply", &format!("--level {level} --shell fat")) else {
         return;
     };
     let cells: Vec<f64> = serde_json::from_value(reports[0]["cells_per_depth"].clone()).unwrap();
@@ -83,7 +83,7 @@ fn bunny_has_the_cells_of_an_independent_voxelization() {
 
 #[test]
 fn bunny_has_no_holes() {
-    let Some(reports) = full_views("bunny.ply", "--level 4") else {
+    let Some(reports) = full_views("bunny.ply", "--level 5") else {
         return;
     };
     assert!(numbers(&reports, "holes").iter().all(|&holes| holes == 0.0));
@@ -93,24 +93,35 @@ fn bunny_has_no_holes() {
             .all(|&pixels| pixels == 0.0)
     );
     let psnr = mean(&numbers(&reports, "psnr_inside"));
-    assert!(psnr >= 24.0, "{psnr} dB");
+    assert!(psnr >= 26.0, "{psnr} dB");
 }
 
-/// Thin, open, self-intersecting: all are drawn, without holes.
+/// Thin, open, self-intersecting: all are drawn. Points leave at most 0.02% of
+/// the object's pixels open, also where the leaves are larger than pixels.
 #[test]
 fn odd_models_are_drawn() {
     for (model, options) in [
         ("buddha_100k.ply", "--level 4 --up z"),
+        ("buddha_100k.ply", "--level 4 --up z --shell fat"),
         ("fracttree.ply", "--level 3"),
         ("fracttree.ply", "--level 3 --two-sided"),
         ("cow.ply", "--level 4"),
+        ("cow.ply", "--level 4 --shell fat"),
         ("teapot.ply", "--level 3"),
         ("teapot.ply", "--level 3 --two-sided"),
     ] {
         let Some(reports) = full_views(model, options) else {
             return;
         };
-        assert_eq!(numbers(&reports, "holes"), [0.0; 4], "{model} {options}");
+        let holes = numbers(&reports, "holes");
+        let inside = numbers(&reports, "inside_pixels");
+        assert!(
+            holes
+                .iter()
+                .zip(inside)
+                .all(|(&holes, inside)| holes <= 2e-4 * inside),
+            "{model} {options}: {holes:?}"
+        );
         let written = numbers(&reports, "pixels_written");
         assert!(
             written.iter().all(|&pixels| pixels > 1000.0),
@@ -129,6 +140,7 @@ fn prefixes_of_the_cow_are_coarser_cows() {
     let bake = |level: u8| {
         let options = rhogrid::bake::GridOptions {
             level,
+            shell: rhogrid_core::asset::Shell::Fat,
             ..Default::default()
         };
         let grid = rhogrid::bake::grid(&imported.geometry, &options, &|_| {}).unwrap();

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use rhogrid_core::asset::node::{flags_shift, halves};
-use rhogrid_core::asset::{HEADER_BYTES, SECTION_BYTES, SECTION_LEVEL};
+use rhogrid_core::asset::{HEADER_BYTES, SECTION_BYTES, SECTION_LEVEL, Shell};
 
 /// Steele's splitmix64: any two seeds give unrelated sequences.
 pub struct Random(u64);
@@ -40,12 +40,14 @@ pub struct Layout {
 struct Level {
     links: Range<usize>,
     nodes: Range<usize>,
+    /// Empty where the nodes are what is drawn.
+    drawn: Range<usize>,
     attributes: Range<usize>,
     end: usize,
 }
 
 impl Layout {
-    pub fn new(name: &'static str, rho: u8, bytes: Vec<u8>) -> Self {
+    pub fn new(name: &'static str, rho: u8, shell: Shell, bytes: Vec<u8>) -> Self {
         let word = |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().unwrap()) as usize;
         let mut cells = vec![];
         let mut levels = vec![];
@@ -61,11 +63,21 @@ impl Layout {
             };
             let links = start + 4..start + 4 + 4 * links;
             let nodes = links.end..links.end + 2 * halves(rho) * parents;
-            let attributes = nodes.end.next_multiple_of(4);
+            let start_of_drawn = nodes.end.next_multiple_of(4);
+            // The header's depth.
+            let depth = cells.len();
+            let stores_drawn = (1..usize::from(bytes[10])).contains(&depth);
+            let drawn_bytes = match shell {
+                Shell::Thin if stores_drawn => nodes.len(),
+                _ => 0,
+            };
+            let drawn = start_of_drawn..start_of_drawn + drawn_bytes;
+            let attributes = drawn.end.next_multiple_of(4);
             cells.push(word(start));
             levels.push(Level {
                 links,
                 nodes,
+                drawn,
                 attributes: attributes..attributes + 2 * word(start),
                 end: start + length,
             });
@@ -145,7 +157,7 @@ impl Mutant {
     fn gentle(&mut self, asset: &Layout, random: &mut Random) {
         let level = &asset.levels[random.below(asset.levels.len())];
         let record = 2 * halves(asset.rho);
-        match random.below(6) {
+        match random.below(7) {
             0 => {
                 let normal = random.next() as u16 & 0x1fff;
                 let at = Self::place(&level.attributes, random);
@@ -162,10 +174,29 @@ impl Mutant {
                     level.nodes.start + record * random.below(level.nodes.len() / record) + record
                         - 2;
                 let flags = 31 << flags_shift(asset.rho);
+                let new = random.next() as u16 & flags;
                 let own = self.half(at) & !flags;
-                self.set(at, &(own | (random.next() as u16 & flags)).to_le_bytes());
+                self.set(at, &(own | new).to_le_bytes());
+                // Both records of a node have the same flags.
+                if !level.drawn.is_empty() {
+                    let at = at - level.nodes.start + level.drawn.start;
+                    let own = self.half(at) & !flags;
+                    self.set(at, &(own | new).to_le_bytes());
+                }
             }
-            3 if !level.nodes.is_empty() => self.rotate_mask(asset.rho, &level.nodes, random),
+            3 if !level.nodes.is_empty() && level.drawn.is_empty() => {
+                self.rotate_mask(asset.rho, &level.nodes, random)
+            }
+            6 if !level.drawn.is_empty() => {
+                // Fewer children are drawn; flags stay.
+                let at = Self::place(&level.drawn, random);
+                let mut mask = random.next() as u16;
+                if (at - level.drawn.start) % record == record - 2 {
+                    mask |= 31 << flags_shift(asset.rho);
+                }
+                let own = self.half(at);
+                self.set(at, &(own & mask).to_le_bytes());
+            }
             4 => self.set(16, &(1 + random.next() as u32 % (2 << 28)).to_le_bytes()),
             _ => {
                 let end = asset.levels[random.below(asset.levels.len())].end;
@@ -198,7 +229,7 @@ impl Mutant {
         let length = self.bytes.len().max(1);
         let at = random.below(length);
         let level = &asset.levels[random.below(asset.levels.len())];
-        match random.below(12) {
+        match random.below(13) {
             0 => {
                 let flipped = self.bytes.get(at).copied().unwrap_or(0) ^ 1 << random.below(8);
                 self.set(at, &[flipped]);
@@ -257,7 +288,11 @@ impl Mutant {
                 let at = 4 + random.below(12);
                 self.set(at, &[random.next() as u8 % 18]);
             }
-            10 if !level.links.is_empty() => {
+            10 if !level.drawn.is_empty() => {
+                let at = Self::place(&level.drawn, random);
+                self.set(at, &(random.next() as u16).to_le_bytes());
+            }
+            11 if !level.links.is_empty() => {
                 let at = level.links.start + 4 * random.below(level.links.len() / 4);
                 self.set(at, &random.pick(&WORDS).to_le_bytes());
             }

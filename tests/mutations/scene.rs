@@ -3,7 +3,7 @@
 use rhogrid::bake::{self, GridOptions, writer};
 use rhogrid::geometry::{Geometry, Material, Mesh};
 use rhogrid::import::procedural::shapes;
-use rhogrid_core::asset::Grid;
+use rhogrid_core::asset::{Grid, Shell};
 use rhogrid_core::camera::{Camera, Orbit};
 use rhogrid_core::draw::{Light, Quality, draw, shades_len};
 use rhogrid_core::numbers::{FocalPx, Length, SplatPx, Turns, Unit, Weight};
@@ -24,27 +24,105 @@ pub fn assets() -> Vec<Layout> {
     for (index, triangle) in many.triangles.iter_mut().enumerate() {
         triangle.material = (index % 8) as u8;
     }
-    let bake = |name, mesh: &Mesh, rho, level, two_sided| {
+    let bake = |name, shell, mesh: &Mesh, rho, level, two_sided| {
         let options = GridOptions {
             rho,
             level,
+            shell,
             two_sided,
             ..GridOptions::default()
         };
         let grid = bake::grid(&Geometry::Mesh(mesh.clone()), &options, &|_| {}).unwrap();
-        Layout::new(name, rho, writer::to_bytes(&grid).unwrap())
+        Layout::new(name, rho, shell, writer::to_bytes(&grid).unwrap())
     };
     vec![
-        bake("torus, rho 2", &shapes::torus(12, 8), 2, 2, false),
-        bake("torus, rho 3", &shapes::torus(12, 8), 3, 1, false),
-        bake("torus, rho 4", &shapes::torus(12, 8), 4, 1, false),
-        bake("torus, rho 5", &shapes::torus(12, 8), 5, 0, false),
-        bake("eight materials, rho 2", &many, 2, 3, false),
-        bake("eight materials, rho 3", &many, 3, 1, true),
-        bake("eight materials, rho 5", &many, 5, 1, false),
-        bake("quad, rho 2", &shapes::quad(), 2, 4, true),
-        bake("sphere, rho 3", &shapes::sphere(8), 3, 0, true),
-        bake("cube, rho 4", &shapes::cube(), 4, 0, false),
+        bake(
+            "torus, rho 2",
+            Shell::Fat,
+            &shapes::torus(12, 8),
+            2,
+            2,
+            false,
+        ),
+        bake(
+            "torus, rho 3",
+            Shell::Fat,
+            &shapes::torus(12, 8),
+            3,
+            1,
+            false,
+        ),
+        bake(
+            "torus, rho 4",
+            Shell::Fat,
+            &shapes::torus(12, 8),
+            4,
+            1,
+            false,
+        ),
+        bake(
+            "torus, rho 5",
+            Shell::Fat,
+            &shapes::torus(12, 8),
+            5,
+            0,
+            false,
+        ),
+        bake("eight materials, rho 2", Shell::Fat, &many, 2, 3, false),
+        bake("eight materials, rho 3", Shell::Fat, &many, 3, 1, true),
+        bake("eight materials, rho 5", Shell::Fat, &many, 5, 1, false),
+        bake("quad, rho 2", Shell::Fat, &shapes::quad(), 2, 4, true),
+        bake("sphere, rho 3", Shell::Fat, &shapes::sphere(8), 3, 0, true),
+        bake("cube, rho 4", Shell::Fat, &shapes::cube(), 4, 0, false),
+        bake(
+            "thin torus, rho 2",
+            Shell::Thin,
+            &shapes::torus(12, 8),
+            2,
+            3,
+            false,
+        ),
+        bake(
+            "thin torus, rho 3",
+            Shell::Thin,
+            &shapes::torus(12, 8),
+            3,
+            2,
+            false,
+        ),
+        bake(
+            "thin torus, rho 4",
+            Shell::Thin,
+            &shapes::torus(12, 8),
+            4,
+            1,
+            false,
+        ),
+        bake(
+            "thin torus, rho 5",
+            Shell::Thin,
+            &shapes::torus(12, 8),
+            5,
+            1,
+            true,
+        ),
+        bake(
+            "thin, eight materials, rho 2",
+            Shell::Thin,
+            &many,
+            2,
+            4,
+            false,
+        ),
+        bake(
+            "thin, eight materials, rho 3",
+            Shell::Thin,
+            &many,
+            3,
+            1,
+            true,
+        ),
+        bake("thin quad, rho 2", Shell::Thin, &shapes::quad(), 2, 4, true),
     ]
 }
 

@@ -67,8 +67,15 @@ pub enum AssetError {
         /// Offset of the section.
         offset: u32,
     },
-    /// A node is empty or has bits outside its mask.
+    /// A node has bits outside its mask, or none in a fat shell.
     Node {
+        /// Depth of the cell that it subdivides.
+        depth: u8,
+        /// Index of that cell in its level.
+        index: u32,
+    },
+    /// A drawn record has children that its node has not, or other flags.
+    Drawn {
         /// Depth of the cell that it subdivides.
         depth: u8,
         /// Index of that cell in its level.
@@ -146,6 +153,10 @@ impl fmt::Display for AssetError {
             Self::Node { depth, index } => write!(
                 f,
                 "depth {depth}, cell {index}: empty or malformed mask; bake the asset again"
+            ),
+            Self::Drawn { depth, index } => write!(
+                f,
+                "depth {depth}, cell {index}: the drawn record contradicts its node; bake the asset again"
             ),
             Self::Link { depth, index } => write!(
                 f,

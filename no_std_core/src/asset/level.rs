@@ -1,9 +1,9 @@
-//! One level: views of its links, nodes and attributes, checked against the
+//! One level: views of its links, records and attributes, checked against the
 //! levels above it.
 
-use super::node::{halves, is_valid, occupied};
+use super::node::{halves, has_stray_bits, is_part, occupied};
 use super::section::{Section, u32_at};
-use super::{AssetError, MAX_MATERIALS};
+use super::{AssetError, MAX_MATERIALS, Shell};
 
 /// The cells of one depth.
 #[derive(Clone, Copy, Debug)]
@@ -13,14 +13,30 @@ pub struct Level<'a> {
     pub links: &'a [u32],
     /// Node records of the cells of depth n - 1: see [`super::node`].
     pub nodes: &'a [u16],
+    /// For each cell of depth n - 1 a record with the same flags and with
+    /// those children that are drawn where drawing stops at this depth n: the
+    /// first of its children. The same slice as `nodes` where that is all of
+    /// them.
+    pub drawn: &'a [u16],
     /// Attributes of the cells of this depth n: material << 13 | normal code.
     pub attributes: &'a [u16],
+}
+
+/// What a level's layout depends on besides the levels above.
+#[derive(Clone, Copy)]
+pub(super) struct Shape {
+    pub rho: u8,
+    pub shell: Shell,
+    /// Whether it has an array of drawn records besides its nodes.
+    pub stores_drawn: bool,
+    pub material_count: u8,
 }
 
 impl<'a> Level<'a> {
     pub(super) const EMPTY: Self = Self {
         links: &[],
         nodes: &[],
+        drawn: &[],
         attributes: &[],
     };
 
@@ -31,22 +47,24 @@ impl<'a> Level<'a> {
 
     /// Checks the level that follows `above` and gives its views.
     pub(super) fn open(
-        rho: u8,
+        shape: Shape,
         above: &[Level<'a>],
-        material_count: u8,
         section: &Section<'a>,
     ) -> Result<Self, AssetError> {
         let size_error = AssetError::LevelSize {
             offset: section.offset,
         };
-        let level = Self::split(rho, above, section).ok_or(size_error)?;
-        level.check_nodes(rho, above, size_error)?;
-        level.check_attributes(above.len() as u8, material_count)?;
+        let level = Self::split(shape, above, section).ok_or(size_error)?;
+        level.check_nodes(shape, above, size_error)?;
+        if shape.stores_drawn {
+            level.check_drawn(shape.rho, above.len() as u8)?;
+        }
+        level.check_attributes(above.len() as u8, shape.material_count)?;
         Ok(level)
     }
 
     /// Cuts the section into its parts; `None` where sizes do not fit.
-    fn split(rho: u8, above: &[Level<'a>], section: &Section<'a>) -> Option<Self> {
+    fn split(shape: Shape, above: &[Level<'a>], section: &Section<'a>) -> Option<Self> {
         let cells = u32_at(section.bytes, 0)? as usize;
         let parents = above.last().map_or(0, Level::cells);
         let grandparents = match above.len() {
@@ -59,25 +77,31 @@ impl<'a> Level<'a> {
         }
         let rest = section.bytes.get(4..)?;
         let (links, rest) = rest.split_at_checked(grandparents.checked_mul(4)?)?;
-        let node_words = parents.checked_mul(halves(rho))?;
+        let node_words = parents.checked_mul(halves(shape.rho))?;
         let (nodes, rest) = split_halves(rest, node_words)?;
+        let (drawn, rest) = match shape.stores_drawn {
+            true => split_halves(rest, node_words)?,
+            false => (nodes, rest),
+        };
         let (attributes, rest) = split_halves(rest, cells)?;
         rest.is_empty().then_some(())?;
         Some(Self {
             links: bytemuck::try_cast_slice(links).ok()?,
             nodes,
+            drawn,
             attributes,
         })
     }
 
-    /// Every node has subcells, links count them, and there are as many as
-    /// cells.
+    /// No node has bits without meaning, those of a fat shell have subcells,
+    /// links count them, and there are as many as cells.
     fn check_nodes(
         &self,
-        rho: u8,
+        shape: Shape,
         above: &[Level<'a>],
         size_error: AssetError,
     ) -> Result<(), AssetError> {
+        let rho = shape.rho;
         let depth = (above.len() as u8).wrapping_sub(1);
         let mut records = self.nodes.chunks_exact(halves(rho)).enumerate();
         let mut cells = u64::from(above.is_empty());
@@ -91,19 +115,37 @@ impl<'a> Level<'a> {
             }
             let siblings = sibling_count(rho, above, group);
             for (index, record) in records.by_ref().take(siblings as usize) {
-                if !is_valid(rho, record) {
+                let subcells = occupied(rho, record);
+                let is_empty = subcells == 0 && shape.shell == Shell::Fat;
+                if is_empty || has_stray_bits(rho, record) {
                     return Err(AssetError::Node {
                         depth,
                         index: index as u32,
                     });
                 }
-                cells += u64::from(occupied(rho, record));
+                cells += u64::from(subcells);
             }
         }
         if cells == self.cells() as u64 {
             Ok(())
         } else {
             Err(size_error)
+        }
+    }
+
+    /// Only children that are there are drawn, and flags are the nodes'.
+    fn check_drawn(&self, rho: u8, depth: u8) -> Result<(), AssetError> {
+        let size = halves(rho);
+        let nodes = self.nodes.chunks_exact(size);
+        let bad = nodes
+            .zip(self.drawn.chunks_exact(size))
+            .position(|(node, drawn)| !is_part(rho, drawn, node));
+        match bad {
+            None => Ok(()),
+            Some(index) => Err(AssetError::Drawn {
+                depth: depth.saturating_sub(1),
+                index: index as u32,
+            }),
         }
     }
 

@@ -10,7 +10,7 @@
 //! | offset | bytes | header field |
 //! |---|---|---|
 //! | 0 | 4 | magic `RHOG` |
-//! | 4 | 2 | version, 1 |
+//! | 4 | 2 | version, 2 |
 //! | 6 | 2 | header bytes H = 64 + 16 x sections |
 //! | 8 | 1 | kind: 1 grid |
 //! | 9 | 1 | rho, 2 to 5 |
@@ -38,13 +38,37 @@
 //! | number of cells N(n) | one 32-bit word |
 //! | links: for each cell of depth n - 2 the index of its first grandchild (one zero where n = 1) | N(n - 2) 32-bit words, 1 where n = 1, none where n = 0 |
 //! | nodes: occupancy of each cell of depth n - 1 (see [`node`]) | N(n - 1) records |
+//! | drawn: which of these children are drawn at this depth; see below | N(n - 1) records, none in a fat asset, where n = 0, and where n is the header's depth |
 //! | attributes: material << 13 \| normal code of each cell of depth n | N(n) 16-bit words |
 //!
-//! Nodes and attributes are each padded to four bytes with zeros. Cells are
-//! stored breadth-first: children of one cell are contiguous, in the order of
-//! their mask bits (x fastest, then y, then z), and so are all grandchildren.
-//! Other section kinds are skipped. A file cut at the end of a level is a
-//! coarser model; cut anywhere else it is an error.
+//! Nodes, drawn and attributes are each padded to four bytes with zeros. Cells
+//! are stored breadth-first: children of one cell are contiguous, the drawn
+//! ones first, both kinds in the order of their mask bits (x fastest, then y,
+//! then z), and so are all grandchildren. Other section kinds are skipped. A
+//! file cut at the end of a level is a coarser model; cut anywhere else it is
+//! an error.
+//!
+//! # Shells
+//!
+//! A *fat* asset holds every cell that the surface touches, and draws all of
+//! them. A *thin* one draws on every level a 6-separating subset: no path of
+//! cells that share faces leads through the surface around it (Samuli Laine,
+//! A Topological Approach to Voxelization, 2013). The thin subset of a level
+//! does not lie below that of the level above alone, so that an intermediate
+//! level of a thin asset holds two kinds of cells:
+//!
+//! | cell of depth n | its bit in nodes | in drawn |
+//! |---|---|---|
+//! | is in the thin subset of its depth | 1 | 1 |
+//! | is not, but has a descendant that is stored | 1 | 0 |
+//!
+//! Where drawing stops at depth n, cells of the first kind are drawn, and
+//! those of the second are not. The first kind may have no children: a node
+//! of a thin asset may be empty, one of a fat asset is not. A drawn record
+//! repeats its node's flags, so that the blocks of the finest level need no
+//! other. The finest level of the whole file holds the first kind alone and no
+//! second array: nodes are what is drawn, as they are in fat assets. Where a
+//! file is cut, its finest level has both kinds, and its leaves are the drawn.
 
 mod error;
 mod level;
@@ -55,12 +79,13 @@ pub use error::AssetError;
 pub use level::Level;
 
 use crate::numbers::Length;
+use level::Shape;
 use section::{Sections, u8_at, u16_at, u32_at};
 
 /// First bytes of every asset.
 pub const MAGIC: [u8; 4] = *b"RHOG";
 /// The format's version.
-pub const VERSION: u16 = 1;
+pub const VERSION: u16 = 2;
 /// Header bytes before the section table.
 pub const HEADER_BYTES: usize = 64;
 /// Bytes of one entry of the section table.
@@ -93,7 +118,8 @@ pub const fn max_depth(rho: u8) -> u8 {
 pub enum Shell {
     /// Every cell that the surface touches.
     Fat,
-    /// A 6-separating subset of them.
+    /// On every level a 6-separating subset of them, and what leads to finer
+    /// ones.
     Thin,
 }
 
@@ -144,7 +170,13 @@ impl<'a> Grid<'a> {
                     let slot = rest.first_mut().ok_or(AssetError::LevelCount {
                         offset: section.offset,
                     })?;
-                    *slot = Level::open(grid.rho, done, grid.material_count, &section)?;
+                    let shape = Shape {
+                        rho: grid.rho,
+                        shell: grid.shell,
+                        stores_drawn: stores_drawn(grid.shell, levels, grid.stored_depth),
+                        material_count: grid.material_count,
+                    };
+                    *slot = Level::open(shape, done, &section)?;
                     levels += 1;
                 }
                 SECTION_MATERIALS => {
@@ -260,6 +292,13 @@ impl<'a> Grid<'a> {
         self.shell
     }
 
+    /// Whether the level of a depth holds cells that are not drawn where
+    /// drawing stops there: a file has a second array of records for it, and
+    /// [`Level::drawn`] is not [`Level::nodes`].
+    pub fn stores_drawn(&self, depth: u8) -> bool {
+        stores_drawn(self.shell, usize::from(depth), self.stored_depth)
+    }
+
     /// Whether every surface is drawn from both sides.
     pub fn two_sided(&self) -> bool {
         self.two_sided
@@ -282,6 +321,11 @@ impl<'a> Grid<'a> {
     pub fn levels(&self) -> &[Level<'a>] {
         self.levels.get(..=usize::from(self.depth)).unwrap_or(&[])
     }
+}
+
+/// Whether a level has a second array of records.
+fn stores_drawn(shell: Shell, depth: usize, stored_depth: u8) -> bool {
+    shell == Shell::Thin && (1..usize::from(stored_depth)).contains(&depth)
 }
 
 /// A CRC-32/ISO-HDLC of the asset's bytes.

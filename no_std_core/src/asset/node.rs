@@ -5,7 +5,8 @@
 //! Five bits of the last word, from bit `flags_shift(rho)` on, hold the
 //! normal cone's aperture (four bits) and the two-sided flag. For rho = 3 the
 //! record is one 32-bit word: 27 mask bits, aperture, flag. All other bits
-//! are zero.
+//! are zero. Thin shells have second records of the same layout: see
+//! [the format](super).
 
 /// 16-bit words of a record.
 pub const fn halves(rho: u8) -> usize {
@@ -93,12 +94,23 @@ pub fn occupied(rho: u8, record: &[u16]) -> u32 {
     body.iter().map(|half| half.count_ones()).sum::<u32>() + (last & !flags).count_ones()
 }
 
-/// Whether a record has a subcell and no bits without meaning.
-pub fn is_valid(rho: u8, record: &[u16]) -> bool {
+/// Whether a record has bits without meaning.
+pub fn has_stray_bits(rho: u8, record: &[u16]) -> bool {
     let Some((&last, body)) = record.split_last() else {
-        return false;
+        return true;
     };
     // rho = 5: 125 mask bits in eight words leave three.
     let stray = rho == 5 && body.last().is_some_and(|half| half >> 13 != 0);
-    last & !last_used(rho) == 0 && !stray && occupied(rho, record) > 0
+    last & !last_used(rho) != 0 || stray
+}
+
+/// Whether a record has no subcells but those of a node, and the node's
+/// flags.
+pub fn is_part(rho: u8, record: &[u16], node: &[u16]) -> bool {
+    let (Some(&last), Some(&node_last)) = (record.last(), node.last()) else {
+        return false;
+    };
+    let flags = 31u16 << flags_shift(rho);
+    let is_subset = record.iter().zip(node).all(|(part, all)| part & !all == 0);
+    is_subset && (last ^ node_last) & flags == 0
 }

@@ -1,4 +1,8 @@
 use super::*;
+use crate::camera::Camera;
+use crate::draw::{Light, Quality, draw};
+use crate::numbers::{SplatPx, Unit, Weight};
+use crate::target::{Target, canvas_len};
 use crate::testing::model::seal;
 use crate::testing::{File, Model, Rng, aligned};
 use std::vec::Vec;
@@ -8,9 +12,22 @@ const DEPTH: u8 = 3;
 
 fn model(rho: u8, seed: u64) -> Model {
     let mut rng = Rng::with_seed(seed);
-    let mut model = Model::random(&mut rng, rho, DEPTH, 30.0);
+    let mut model = Model::random_fat(&mut rng, rho, DEPTH, 30.0);
     model.paint(&mut rng);
     model
+}
+
+fn thin_model(rho: u8, seed: u64) -> Model {
+    let mut rng = Rng::with_seed(seed);
+    let mut model = model(rho, seed);
+    model.make_thin(&mut rng);
+    model
+}
+
+fn bits(rho: u8, record: &[u16]) -> u128 {
+    let bits = 0..usize::from(rho).pow(3);
+    bits.filter(|bit| record[bit / 16] >> (bit % 16) & 1 != 0)
+        .fold(0, |mask, bit| mask | 1 << bit)
 }
 
 fn small() -> File {
@@ -48,13 +65,16 @@ fn views_are_those_of_the_model() {
         for depth in [0, 1, 2, 3, if rho == 2 { 15 } else { max_depth(rho) }] {
             let mut rng = Rng::with_seed(u64::from(depth));
             let leaves = if depth == 0 { 1.0 } else { 60.0 };
-            let model = Model::random(&mut rng, rho, depth, leaves);
+            let mut model = Model::random_fat(&mut rng, rho, depth, leaves);
+            if rng.bool() {
+                model.make_thin(&mut rng);
+            }
             let bytes = aligned(&model.file().bytes());
             let grid = Grid::open(&bytes).unwrap_or_else(|e| panic!("rho {rho}: {e}"));
             assert_eq!((grid.rho(), grid.depth()), (rho, depth));
             assert_eq!(grid.stored_depth(), depth);
             assert_eq!(grid.radius(), Length::ONE);
-            assert_eq!(grid.shell(), Shell::Fat);
+            assert_eq!(grid.shell(), model.shell);
             assert!(!grid.two_sided());
             assert_eq!(grid.materials(), [[255; 3]]);
             assert_eq!(grid.levels().len(), usize::from(depth) + 1);
@@ -72,11 +92,21 @@ fn views_are_those_of_the_model() {
                     let last = *record.last().expect("a record has words");
                     assert_eq!(node::Flags::from_last(rho, last), cell.flags);
                     assert_eq!(node::occupied(rho, record), cell.mask.count_ones());
-                    for bit in 0..usize::from(rho).pow(3) {
-                        let got = record[bit / 16] >> (bit % 16) & 1;
-                        assert_eq!(u128::from(got), cell.mask >> bit & 1, "bit {bit}");
-                    }
+                    assert_eq!(bits(rho, record), cell.mask);
                 }
+                let records = level.drawn.chunks_exact(node::halves(rho));
+                assert_eq!(records.len(), cells.len());
+                for (record, cell) in records.zip(cells) {
+                    let last = *record.last().expect("a record has words");
+                    assert_eq!(node::Flags::from_last(rho, last), cell.flags);
+                    assert_eq!(bits(rho, record), cell.drawn);
+                }
+            }
+            for (depth, level) in (0..).zip(grid.levels()) {
+                let stores_drawn = model.stores_drawn(usize::from(depth));
+                assert_eq!(grid.stores_drawn(depth), stores_drawn);
+                let is_shared = level.drawn.as_ptr() == level.nodes.as_ptr();
+                assert!(depth == 0 || is_shared != stores_drawn);
             }
             for depth in 2..grid.levels().len() {
                 let links = grid.levels()[depth].links;
@@ -93,8 +123,7 @@ fn views_are_those_of_the_model() {
 
 #[test]
 fn header_fields_are_read() {
-    let mut file = small();
-    file.header[12] = 1;
+    let mut file = thin_model(3, 51).file();
     file.header[14] = 1;
     file.header[16..20].copy_from_slice(&(3u32 << 27).to_le_bytes());
     let bytes = aligned(&file.bytes());
@@ -118,10 +147,11 @@ fn wrong_headers_are_named() {
         );
     }
     refused(&with_byte(&file, 0, b'r'), AssetError::Magic);
-    refused(&with_byte(&file, 4, 2), AssetError::Version { version: 2 });
+    refused(&with_byte(&file, 4, 1), AssetError::Version { version: 1 });
+    refused(&with_byte(&file, 4, 3), AssetError::Version { version: 3 });
     refused(
         &with_byte(&file, 5, 1),
-        AssetError::Version { version: 257 },
+        AssetError::Version { version: 258 },
     );
     refused(&with_byte(&file, 8, 2), AssetError::Kind { kind: 2 });
     for rho in [0, 1, 6, 255] {
@@ -168,8 +198,9 @@ fn every_flipped_bit_is_found() {
 
 #[test]
 fn files_open_at_the_ends_of_levels_only() {
-    for rho in 2..=5 {
-        let mut file = model(rho, 52).file();
+    for (rho, model) in (2..=5).flat_map(|rho| [(rho, model(rho, 52)), (rho, thin_model(rho, 52))])
+    {
+        let mut file = model.file();
         file.sections.insert(3, (77, std::vec![1; 8]));
         let bytes = file.bytes();
         let ends = file.ends();
@@ -184,6 +215,7 @@ fn files_open_at_the_ends_of_levels_only() {
                     assert_eq!(usize::from(grid.depth()), depth, "{length} bytes");
                     assert_eq!(grid.stored_depth(), DEPTH);
                     assert_eq!(grid.levels().len(), depth + 1);
+                    assert_is_coarser(&grid, &model, depth);
                 }
                 (Err(AssetError::Truncated { length: got }), None) => {
                     assert_eq!(got as usize, length);
@@ -195,6 +227,30 @@ fn files_open_at_the_ends_of_levels_only() {
         let length = longer.len() as u32;
         refused(&longer, AssetError::Truncated { length });
     }
+}
+
+/// The drawn cells of a cut file are the leaves of the coarser model.
+fn assert_is_coarser(grid: &Grid<'_>, model: &Model, depth: usize) {
+    let coarse = model.cut(depth);
+    let level = grid.levels()[depth];
+    let want: Vec<u16> = coarse.levels[depth]
+        .iter()
+        .map(|cell| cell.attribute)
+        .collect();
+    if depth == 0 {
+        assert_eq!(level.attributes, want);
+        return;
+    }
+    let mut drawn = Vec::new();
+    let mut first = 0;
+    let size = node::halves(grid.rho());
+    let records = level.nodes.chunks_exact(size);
+    for (all, part) in records.zip(level.drawn.chunks_exact(size)) {
+        let part = node::occupied(grid.rho(), part) as usize;
+        drawn.extend_from_slice(&level.attributes[first..first + part]);
+        first += node::occupied(grid.rho(), all) as usize;
+    }
+    assert_eq!(drawn, want);
 }
 
 #[test]
@@ -293,6 +349,7 @@ fn wrong_level_counts_are_named() {
 struct Layout {
     links: usize,
     nodes: usize,
+    drawn: usize,
 }
 
 fn layout(model: &Model, depth: usize) -> Layout {
@@ -302,7 +359,15 @@ fn layout(model: &Model, depth: usize) -> Layout {
         _ => model.levels[depth - 2].len(),
     };
     let nodes = 4 + 4 * links;
-    Layout { links: 4, nodes }
+    let parents = depth
+        .checked_sub(1)
+        .map_or(0, |above| model.levels[above].len());
+    let drawn = nodes + (2 * node::halves(model.rho) * parents).next_multiple_of(4);
+    Layout {
+        links: 4,
+        nodes,
+        drawn,
+    }
 }
 
 #[test]
@@ -374,6 +439,83 @@ fn wrong_levels_are_named() {
     }
 }
 
+/// What a record may hold in a thin shell, and what its drawn twin may not.
+#[test]
+fn thin_levels_are_checked() {
+    for (rho, seed) in (2..=5).flat_map(|rho| [(rho, 58), (rho, 59), (rho, 60)]) {
+        let model = thin_model(rho, seed);
+        let file = model.file();
+        assert_eq!(open(&file.bytes()), Ok(()));
+        let above = &model.levels[usize::from(DEPTH) - 1];
+        // The same cells in a fat shell: no drawn records, no empty nodes.
+        let mut fat = model.clone();
+        fat.shell = Shell::Fat;
+        match above.iter().position(|cell| cell.mask == 0) {
+            None => assert_eq!(open(&fat.file().bytes()), Ok(())),
+            Some(index) => {
+                let (depth, index) = (DEPTH - 1, index as u32);
+                refused(&fat.file().bytes(), AssetError::Node { depth, index });
+            }
+        }
+        // A shell that the arrays contradict.
+        let mut wrong = file.clone();
+        wrong.header[12] = 0;
+        let offset = file.ends()[1] as u32;
+        refused(&wrong.bytes(), AssetError::LevelSize { offset });
+        let record_bytes = 2 * node::halves(rho);
+        for depth in 1..usize::from(DEPTH) {
+            let drawn = layout(&model, depth).drawn;
+            for (index, cell) in model.levels[depth - 1].iter().enumerate() {
+                let at = drawn + index * record_bytes;
+                let change = |byte: usize, bit: u8| {
+                    let mut file = file.clone();
+                    file.sections[depth + 1].1[at + byte] ^= bit;
+                    file.bytes()
+                };
+                let error = AssetError::Drawn {
+                    depth: (depth - 1) as u8,
+                    index: index as u32,
+                };
+                let absent = (!cell.mask).trailing_zeros() as usize;
+                if absent < usize::from(rho).pow(3) {
+                    refused(&change(absent / 8, 1 << (absent % 8)), error);
+                }
+                for flag in 0..5 {
+                    let bit = node::flags_shift(rho) as usize + flag;
+                    let byte = record_bytes - 2 + bit / 8;
+                    refused(&change(byte, 1 << (bit % 8)), error);
+                }
+                if matches!(rho, 2 | 4 | 5) {
+                    refused(&change(record_bytes - 1, 0x80), error);
+                }
+                // Any subset of the node will do.
+                let bit = cell.mask.trailing_zeros() as usize;
+                if cell.mask != 0 {
+                    assert_eq!(open(&change(bit / 8, 1 << (bit % 8))), Ok(()));
+                }
+            }
+            // The padding behind an odd number of words.
+            let bytes = record_bytes * model.levels[depth - 1].len();
+            if !bytes.is_multiple_of(4) {
+                let mut file = file.clone();
+                file.sections[depth + 1].1[drawn + bytes] = 1;
+                let offset = file.ends()[depth] as u32;
+                refused(&file.bytes(), AssetError::LevelSize { offset });
+            }
+        }
+    }
+}
+
+#[test]
+fn a_thin_shell_may_hold_nothing_below_the_root() {
+    let mut model = thin_model(3, 61);
+    for depth in 1..=usize::from(DEPTH) {
+        model.levels[depth].clear();
+    }
+    (model.levels[0][0].mask, model.levels[0][0].drawn) = (0, 0);
+    assert_eq!(open(&model.file().bytes()), Ok(()));
+}
+
 #[test]
 fn links_past_the_first_are_checked() {
     let model = model(4, 55);
@@ -419,7 +561,13 @@ fn attributes_name_materials_that_are_there() {
 #[test]
 fn random_bytes_behind_valid_checksums_do_no_harm() {
     let mut rng = Rng::with_seed(57);
-    let files = [0, 1, 2, 3, 4, 5, 6, 7].map(|seed| model(2 + seed as u8 % 4, seed).file());
+    let files = [0, 1, 2, 3, 4, 5, 6, 7].map(|seed| {
+        let rho = 2 + seed as u8 % 4;
+        match seed < 4 {
+            true => model(rho, seed).file(),
+            false => thin_model(rho, seed).file(),
+        }
+    });
     let mut accepted = 0;
     for _ in 0..20_000 {
         let mut file = rng.choice(&files).expect("not empty").clone();
@@ -437,4 +585,54 @@ fn random_bytes_behind_valid_checksums_do_no_harm() {
         accepted += u32::from(open(&file.bytes()).is_ok());
     }
     assert!((100..19_000).contains(&accepted), "{accepted} accepted");
+}
+
+/// Wherever drawing stops, what a cut file has besides the coarser model does
+/// not show.
+#[test]
+fn cut_files_draw_as_the_coarser_model() {
+    let mut rng = Rng::with_seed(62);
+    let (mut covered, mut splats) = (0, 0);
+    for case in 0..400 {
+        let (rho, depth) = (rng.u8(2..=5), rng.u8(1..=3));
+        let mut model = Model::random_fat(&mut rng, rho, depth, 200.0);
+        model.paint(&mut rng);
+        model.make_thin(&mut rng);
+        let cut = rng.usize(..usize::from(depth));
+        let file = model.file();
+        let end = file.ends()[file.sections.len() - 1 - (usize::from(depth) - cut)];
+        let camera = crate::testing::camera(&mut rng, 20.0, 48.0);
+        let quality = Quality {
+            splat: SplatPx::from_num(rng.u8(..3) * 4),
+            ..Quality::default()
+        };
+        let [own, coarse] = [file.bytes()[..end].to_vec(), model.cut(cut).file().bytes()];
+        let [own, coarse] = [own, coarse].map(|bytes| frame(&bytes, &camera, &quality));
+        assert_eq!(
+            own, coarse,
+            "case {case}, rho {rho}, depth {cut} of {depth}"
+        );
+        covered += usize::from(own.0.iter().any(|&depth| depth > 0));
+        splats += usize::from(quality.splat > 0);
+    }
+    assert!(covered > 200 && splats > 200, "{covered}, {splats}");
+}
+
+/// Depths and colours of a picture.
+fn frame(bytes: &[u8], camera: &Camera, quality: &Quality) -> (Vec<u16>, Vec<u16>) {
+    let bytes = aligned(bytes);
+    let grid = Grid::open(&bytes).expect("valid");
+    let pixels = usize::from(camera.width) * usize::from(camera.height);
+    let (mut colour, mut depth) = (std::vec![0; pixels], std::vec![0; pixels]);
+    let mut canvas = std::vec![0; canvas_len(camera.height)];
+    let mut target = Target::new(camera.width, camera.height, &mut colour, &mut canvas)
+        .and_then(|target| target.with_depth(&mut depth))
+        .expect("buffers fit");
+    let light = Light {
+        towards: [Unit::ZERO, Unit::ONE, Unit::ZERO],
+        ambient: Weight::ONE,
+        diffuse: Weight::ZERO,
+    };
+    draw(&grid, camera, &light, quality, &mut [], &mut target);
+    (depth, colour)
 }

@@ -193,6 +193,12 @@ impl Normals {
         x * self.view[0] + y * self.view[1] + z * self.view[2]
     }
 
+    /// Largest component of the viewing direction, Q14.
+    pub fn largest(&self) -> i32 {
+        let [x, y, z] = self.view.map(i32::abs);
+        x.max(y).max(z)
+    }
+
     /// Whether all of a cell faces away, by its cone.
     #[inline(always)]
     pub fn is_away(&self, flags: Flags, code: u16) -> bool {

@@ -80,3 +80,29 @@ pub(super) fn count<const RHO: u8>(record: &[u16]) -> usize {
         .map(|index| usize::from(COUNTS[chunk::<RHO>(record, index) % 512]))
         .sum()
 }
+
+/// A chunk with its place in the record.
+pub(super) struct Chunk {
+    pub index: usize,
+    /// Below 512.
+    pub bits: usize,
+}
+
+/// The chunks of a cell's children in file order: first the drawn ones, then
+/// the others.
+#[inline(always)]
+pub(super) fn in_file_order<'a, const RHO: u8>(
+    node: &'a [u16],
+    drawn: &'a [u16],
+) -> impl Iterator<Item = Chunk> + use<'a, RHO> {
+    let bits = |record: &'a [u16], index| chunk::<RHO>(record, index) % 512;
+    let of_drawn = (0..chunks(RHO)).map(move |index| Chunk {
+        index,
+        bits: bits(drawn, index),
+    });
+    let others = (0..chunks(RHO)).map(move |index| Chunk {
+        index,
+        bits: bits(node, index) & !bits(drawn, index),
+    });
+    of_drawn.chain(others)
+}

@@ -5,8 +5,10 @@ use super::footprint::Place;
 use super::lists::{self, COUNTS, LISTS};
 use super::packed::{HALF_LEFT, Step, Subcells, block, block_turned};
 use super::tables::Point;
-use super::traverse::{Cell, Frame, Output};
-use crate::asset::node::{Flags, halves};
+use super::traverse::{Cell, Frame, Output, Record, records};
+use crate::asset::Shell;
+use crate::asset::node::Flags;
+use crate::canvas::Window;
 use crate::numbers::SCREEN_BITS;
 use crate::reciprocal::{Reciprocal, reciprocal};
 
@@ -14,6 +16,10 @@ use crate::reciprocal::{Reciprocal, reciprocal};
 /// a window reaches seven pixels beyond its middle one; rounding and the
 /// fraction need the rest.
 const REACH: i32 = 6 * (1 << SCREEN_BITS) + (7 << SCREEN_BITS) / 8;
+
+/// What a subtree's depths may be off by rounding, at most one for each step
+/// and chunk.
+const DEPTH_ROUNDING: i32 = 16;
 
 /// Tables of the subtree at hand; filled before they are read, and kept so
 /// that nobody clears them.
@@ -34,11 +40,21 @@ impl Scratch {
 struct Steps([Step; 3]);
 
 impl Steps {
-    /// How far the outermost of `cells` an axis lie from the middle.
+    /// Whether a subtree of `cells` an axis around a place fits a window and
+    /// the depth field.
     #[inline(always)]
-    fn reach(&self, cells: i32) -> i32 {
-        let sum = |of: fn(&Step) -> i32| self.0.iter().map(|step| of(step).abs()).sum::<i32>();
-        sum(|step| step.x).max(sum(|step| step.y)) * (cells - 1) / 2
+    fn fit(&self, place: &Place, cells: i32) -> bool {
+        let reach = |of: fn(&Step) -> i32| {
+            let sum = |sum: i32, step| sum.saturating_add(of(step).saturating_abs());
+            // Beyond this nothing fits; below it, the product does.
+            self.0.iter().fold(0, sum).min(1 << 24) * (cells - 1) / 2
+        };
+        let depth = reach(|step| step.depth) + DEPTH_ROUNDING;
+        let middle = i32::from(place.depth);
+        reach(|step| step.x) <= REACH
+            && reach(|step| step.y) <= REACH
+            && middle > depth
+            && middle + depth <= 65535
     }
 
     #[inline(always)]
@@ -69,8 +85,8 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
             let ratio = inverse.times(edge.w, RATIO_BITS + 1);
             let shear = |of: i32| ((i64::from(of) * i64::from(ratio)) >> RATIO_BITS) as i32;
             Step {
-                x: inverse.times(edge.x, bits) - shear(x),
-                y: inverse.times(edge.y, bits) - shear(y),
+                x: inverse.times(edge.x, bits).saturating_sub(shear(x)),
+                y: inverse.times(edge.y, bits).saturating_sub(shear(y)),
                 depth: -shear(scaled),
             }
         };
@@ -78,7 +94,27 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
         Steps([step(first), step(second), step(third)])
     }
 
-    /// Draws the children of a cell as points.
+    /// Whether the cells of a depth, at a cell's distance, are drawn as points
+    /// one pixel wide.
+    ///
+    /// A thin shell of a surface that faces the eye holds, for each cell's
+    /// area of the picture, as many cells as the largest component of the
+    /// viewing direction says: one where an axis leads to the eye, 0.58 where
+    /// a diagonal does. So that is what a pixel's area is held against.
+    #[inline(always)]
+    fn is_narrow(&self, cell: &Cell, depth: u8, normals: &Normals) -> bool {
+        let narrow = i64::from(self.plan.level(depth).narrow >> 8);
+        let w = i64::from(cell.centre.w >> 8);
+        let density = match self.grid.shell() {
+            Shell::Fat => 1 << 14,
+            Shell::Thin => normals.largest(),
+        };
+        // 22 + 22 + 14 bits.
+        w * w * i64::from(density) >= (narrow * narrow) << 14
+    }
+
+    /// Draws the children of a cell as points. `false`, with nothing done, if
+    /// they do not fit a window.
     #[inline(never)]
     pub(super) fn packed_block<const RHO: u8>(
         &self,
@@ -87,44 +123,46 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
         flags: Flags,
         normals: &Normals,
         output: &mut Output<'_, '_>,
-    ) {
+    ) -> bool {
         let inverse = reciprocal(cell.centre.w as u32);
         let place = Place::of(self.projection, cell.centre, inverse);
+        let steps = self.steps(cell.depth + 1, &place, inverse);
+        if !steps.fit(&place, i32::from(RHO)) {
+            return false;
+        }
         if !self.is_near_strip(&place, output) {
-            return;
+            return true;
         }
         let below = usize::from(cell.depth) + 1;
         let level = self.grid.levels().get(below);
         let Some(attributes) = level.and_then(|level| level.attributes.get(cell.first_child..))
         else {
-            return;
+            return true;
         };
-        let steps = self.steps(cell.depth + 1, &place, inverse);
         output.scratch.leaves.fill::<RHO>(&steps.0);
         let start = place.step().packed_in_window();
         let Some(window) = output
             .canvas
             .window(place.x >> SCREEN_BITS, place.y >> SCREEN_BITS)
         else {
-            return;
+            return true;
         };
-        let leaves = &output.scratch.leaves;
-        let is_narrow = cell.centre.w >= self.plan.level(cell.depth + 1).narrow;
-        let drawn = match (flags.is_sheet(), is_narrow) {
-            (false, true) => block::<RHO, false>(start, record, attributes, leaves, window),
-            (false, false) => {
-                let start = start.wrapping_add(HALF_LEFT);
-                block::<RHO, true>(start, record, attributes, leaves, window)
-            }
-            (true, true) => {
-                block_turned::<RHO, false>(start, record, attributes, leaves, window, normals)
-            }
-            (true, false) => {
-                let start = start.wrapping_add(HALF_LEFT);
-                block_turned::<RHO, true>(start, record, attributes, leaves, window, normals)
-            }
+        let is_narrow = self.is_narrow(cell, cell.depth + 1, normals);
+        let start = if is_narrow {
+            start
+        } else {
+            start.wrapping_add(HALF_LEFT)
         };
+        let drawn = draw_block::<RHO>(
+            start,
+            record,
+            attributes,
+            &output.scratch.leaves,
+            window,
+            (is_narrow, flags.is_sheet().then_some(normals)),
+        );
         output.stats.samples_drawn += drawn as u32;
+        true
     }
 
     /// Draws the grandchildren of a cell as points. `false`, with nothing
@@ -133,7 +171,7 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
     pub(super) fn packed_tree<const RHO: u8>(
         &self,
         cell: &Cell,
-        record: &[u16],
+        record: Record<'_>,
         normals: &Normals,
         output: &mut Output<'_, '_>,
     ) -> bool {
@@ -141,7 +179,7 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
         let inverse = reciprocal(cell.centre.w as u32);
         let place = Place::of(self.projection, cell.centre, inverse);
         let steps = self.steps(cell.depth + 2, &place, inverse);
-        if steps.reach(rho * rho) > REACH {
+        if !steps.fit(&place, rho * rho) {
             return false;
         }
         if !self.is_near_strip(&place, output) {
@@ -155,7 +193,7 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
         let Scratch { blocks, leaves } = &mut *output.scratch;
         blocks.fill::<RHO>(&steps.times(rho).0);
         leaves.fill::<RHO>(&steps.0);
-        let is_narrow = cell.centre.w >= self.plan.level(cell.depth + 2).narrow;
+        let is_narrow = self.is_narrow(cell, cell.depth + 2, normals);
         let mut start = place.step().packed_in_window();
         if !is_narrow {
             start = start.wrapping_add(HALF_LEFT);
@@ -166,43 +204,63 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
         else {
             return true;
         };
-        let size = halves(RHO);
         let axes = level.attributes.get(cell.first_child..).unwrap_or(&[]);
-        let records = next.nodes.get(cell.first_child * size..).unwrap_or(&[]);
-        let mut children = axes.iter().zip(records.chunks_exact(size));
+        let mut children = axes.iter().zip(records::<RHO>(next, cell.first_child));
         let first = next.links.get(cell.index).copied().unwrap_or(0) as usize;
         let mut attributes = next.attributes.get(first..).unwrap_or(&[]);
         let mut stats = *output.stats;
-        for (index, &offset) in (0..lists::chunks(RHO)).zip(&blocks.chunks) {
-            let bits = lists::chunk::<RHO>(record, index) % 512;
-            let mut list = LISTS[bits];
-            let chunk = start.wrapping_add(offset);
-            for (&axis, record) in children.by_ref().take(usize::from(COUNTS[bits])) {
-                let place = chunk.wrapping_add(blocks.cells[(list & 15) as usize]);
+        for chunk in lists::in_file_order::<RHO>(record.node, record.drawn) {
+            let mut list = LISTS[chunk.bits];
+            let Some(offset) = blocks.chunks.get(chunk.index) else {
+                break;
+            };
+            let pivot = start.wrapping_add(*offset);
+            for (&axis, record) in children.by_ref().take(usize::from(COUNTS[chunk.bits])) {
+                let place = pivot.wrapping_add(blocks.cells[(list & 15) as usize]);
                 list >>= 4;
                 stats.nodes_visited += 1;
-                let flags = Flags::from_last(RHO, record.last().copied().unwrap_or(0));
+                let flags = Flags::from_last(RHO, record.drawn.last().copied().unwrap_or(0));
                 if normals.is_away(flags, axis) {
                     stats.nodes_back_facing += 1;
-                    let count = lists::count::<RHO>(record);
-                    attributes = attributes.get(count..).unwrap_or(&[]);
-                    continue;
+                } else {
+                    let drawn = draw_block::<RHO>(
+                        place,
+                        record.drawn,
+                        attributes,
+                        leaves,
+                        window,
+                        (is_narrow, flags.is_sheet().then_some(normals)),
+                    );
+                    stats.samples_drawn += drawn as u32;
                 }
-                let drawn = match (flags.is_sheet(), is_narrow) {
-                    (false, true) => block::<RHO, false>(place, record, attributes, leaves, window),
-                    (false, false) => block::<RHO, true>(place, record, attributes, leaves, window),
-                    (true, true) => block_turned::<RHO, false>(
-                        place, record, attributes, leaves, window, normals,
-                    ),
-                    (true, false) => block_turned::<RHO, true>(
-                        place, record, attributes, leaves, window, normals,
-                    ),
-                };
-                stats.samples_drawn += drawn as u32;
-                attributes = attributes.get(drawn..).unwrap_or(&[]);
+                let count = lists::count::<RHO>(record.node);
+                attributes = attributes.get(count..).unwrap_or(&[]);
             }
         }
         *output.stats = stats;
         true
+    }
+}
+
+/// Draws a block the short way that suits it: points one pixel wide or two;
+/// with normals, sheets that show the side that is seen.
+#[inline(always)]
+fn draw_block<const RHO: u8>(
+    place: u32,
+    record: &[u16],
+    attributes: &[u16],
+    leaves: &Subcells,
+    window: &mut Window,
+    (is_narrow, normals): (bool, Option<&Normals>),
+) -> usize {
+    match (normals, is_narrow) {
+        (None, true) => block::<RHO, false>(place, record, attributes, leaves, window),
+        (None, false) => block::<RHO, true>(place, record, attributes, leaves, window),
+        (Some(normals), true) => {
+            block_turned::<RHO, false>(place, record, attributes, leaves, window, normals)
+        }
+        (Some(normals), false) => {
+            block_turned::<RHO, true>(place, record, attributes, leaves, window, normals)
+        }
     }
 }

@@ -13,8 +13,8 @@ use super::footprint::{Place, is_beside, near_limit};
 use super::lists::{self, COUNTS, LISTS};
 use super::subtree::Scratch;
 use super::tables::{Point, Tables};
-use crate::asset::Grid;
 use crate::asset::node::{Flags, halves};
+use crate::asset::{Grid, Level};
 use crate::camera::Camera;
 use crate::canvas::Canvas;
 use crate::plan::Plan;
@@ -50,6 +50,26 @@ pub(super) struct Cell {
     pub view: [i32; 3],
     /// Whether all of it is known to lie inside the strip.
     pub inside: bool,
+}
+
+/// The two records of a cell: see [the format](crate::asset).
+#[derive(Clone, Copy)]
+pub(super) struct Record<'a> {
+    /// All children.
+    pub node: &'a [u16],
+    /// Those that are drawn where drawing stops at their depth.
+    pub drawn: &'a [u16],
+}
+
+/// The records of a level, from a cell on.
+pub(super) fn records<'a, const RHO: u8>(
+    level: &Level<'a>,
+    first: usize,
+) -> impl Iterator<Item = Record<'a>> + use<'a, RHO> {
+    let size = halves(RHO);
+    let of = move |words: &'a [u16]| words.get(first * size..).unwrap_or(&[]).chunks_exact(size);
+    let records = of(level.nodes).zip(of(level.drawn));
+    records.map(|(node, drawn)| Record { node, drawn })
 }
 
 /// Draws a grid on a clear canvas.
@@ -116,8 +136,9 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
         };
         match next {
             Some(next) if self.plan.depth > 0 => {
-                let record = next.nodes.get(..halves(RHO)).unwrap_or(&[]);
-                self.node::<RHO>(root, record, attribute, output);
+                if let Some(record) = records::<RHO>(next, 0).next() {
+                    self.node::<RHO>(root, record, attribute, output);
+                }
             }
             _ => self.lone_root(root, attribute, output),
         }
@@ -128,12 +149,14 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
     fn node<const RHO: u8>(
         &self,
         cell: &Cell,
-        record: &[u16],
+        record: Record<'_>,
         attribute: u16,
         output: &mut Output<'_, '_>,
     ) {
         output.stats.nodes_visited += 1;
-        let Some(&last) = record.last() else { return };
+        let Some(&last) = record.drawn.last() else {
+            return;
+        };
         let flags = Flags::from_last(RHO, last);
         let normals = Normals::new(cell.view, self.tables.extents(cell.depth).eye_radius);
         if normals.is_away(flags, attribute) {
@@ -157,10 +180,10 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
         let is_last = |depth: u8| depth == self.plan.depth;
         let plan = self.plan.level(below);
         if is_last(below) || w >= plan.stop {
-            if w >= plan.packed[0] {
-                self.packed_block::<RHO>(&cell, record, flags, &normals, output);
-            } else {
-                self.leaves::<RHO>(&cell, record, flags, attribute, output);
+            let is_packed = w >= plan.packed[0]
+                && self.packed_block::<RHO>(&cell, record.drawn, flags, &normals, output);
+            if !is_packed {
+                self.leaves::<RHO>(&cell, record.drawn, flags, attribute, output);
             }
             return;
         }
@@ -186,36 +209,37 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
         self.clip.side(cell.depth, cell.centre)
     }
 
-    /// Visits the children of a cell, all of which are intermediate.
+    /// Visits the children of a cell, all of which are intermediate: in file
+    /// order, first those that are drawn at their depth, then the others.
     #[inline(never)]
-    fn children<const RHO: u8>(&self, cell: &Cell, record: &[u16], output: &mut Output<'_, '_>) {
+    fn children<const RHO: u8>(
+        &self,
+        cell: &Cell,
+        record: Record<'_>,
+        output: &mut Output<'_, '_>,
+    ) {
         let table = self.tables.below(cell.depth);
         let below = usize::from(cell.depth) + 1;
         let levels = self.grid.levels();
         let (Some(level), Some(next)) = (levels.get(below), levels.get(below + 1)) else {
             return;
         };
-        let size = halves(RHO);
         let attributes = level.attributes.get(cell.first_child..).unwrap_or(&[]);
-        let records = next.nodes.get(cell.first_child * size..).unwrap_or(&[]);
         let mut children = attributes
             .iter()
-            .zip(records.chunks_exact(size))
+            .zip(records::<RHO>(next, cell.first_child))
             .zip(cell.first_child..);
         let mut first_child = next.links.get(cell.index).copied().unwrap_or(0) as usize;
-        let rows = lists::chunk_rows(RHO) * usize::from(RHO);
-        let displacements = table.displacements.chunks(rows);
-        let eye_displacements = table.eye_displacements.chunks(rows);
-        let chunks = (0..lists::chunks(RHO)).zip(displacements.zip(eye_displacements));
-        for (chunk, (displacements, eye_displacements)) in chunks {
-            let bits = lists::chunk::<RHO>(record, chunk) % 512;
-            let mut list = LISTS[bits];
-            let own = children.by_ref().take(usize::from(COUNTS[bits]));
+        let cells = lists::chunk_rows(RHO) * usize::from(RHO);
+        for chunk in lists::in_file_order::<RHO>(record.node, record.drawn) {
+            let first = chunk.index * cells;
+            let mut list = LISTS[chunk.bits];
+            let own = children.by_ref().take(usize::from(COUNTS[chunk.bits]));
             for ((&attribute, record), index) in own {
-                let at = (list & 15) as usize ^ 8;
+                let at = first + ((list & 15) as usize ^ 8);
                 list >>= 4;
-                let (Some(displacement), Some(eye_displacement)) =
-                    (displacements.get(at), eye_displacements.get(at))
+                let (Some(&displacement), Some(eye_displacement)) =
+                    (table.displacements.get(at), table.eye_displacements.get(at))
                 else {
                     return;
                 };
@@ -224,7 +248,7 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
                     depth: cell.depth + 1,
                     index,
                     first_child,
-                    centre: cell.centre.plus(*displacement),
+                    centre: cell.centre.plus(displacement),
                     view: [
                         x + eye_displacement[0],
                         y + eye_displacement[1],
@@ -232,7 +256,7 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
                     ],
                     inside: cell.inside,
                 };
-                first_child += lists::count::<RHO>(record);
+                first_child += lists::count::<RHO>(record.node);
                 self.node::<RHO>(&child, record, attribute, output);
             }
         }

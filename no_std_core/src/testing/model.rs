@@ -6,7 +6,7 @@ use super::Rng;
 use crate::asset::node::{APERTURE_ALL, Flags, halves};
 use crate::asset::{
     HEADER_BYTES, HEADER_CRC_OFFSET, KIND_GRID, MAGIC, Rgb, SECTION_BYTES, SECTION_LEVEL,
-    SECTION_MATERIALS, VERSION, checksum,
+    SECTION_MATERIALS, Shell, VERSION, checksum,
 };
 
 /// One cell of a model.
@@ -15,11 +15,15 @@ pub(crate) struct Cell {
     /// Twice the cell's coordinates, plus one, minus the cells per axis: its
     /// centre in units of its half side.
     pub place: [i64; 3],
-    /// Its parent's index in the level above.
+    /// Its parent's index in the level above, and which subcell it is.
     pub parent: usize,
+    pub bit: u32,
     pub attribute: u16,
     /// Occupied subcells; zero on the last level.
     pub mask: u128,
+    /// Those that are drawn where drawing stops there: all in a fat shell and
+    /// on the last level.
+    pub drawn: u128,
     pub flags: Flags,
 }
 
@@ -27,6 +31,7 @@ pub(crate) struct Cell {
 #[derive(Clone, Debug)]
 pub(crate) struct Model {
     pub rho: u8,
+    pub shell: Shell,
     pub materials: Vec<Rgb>,
     pub levels: Vec<Vec<Cell>>,
 }
@@ -34,7 +39,7 @@ pub(crate) struct Model {
 impl Model {
     /// Grows a grid: `occupy` says for each cell of each depth which subcells
     /// it has (limited to rho^3, never none), `dress` sets attribute and
-    /// flags.
+    /// flags. The shell is fat.
     pub fn grow(
         rho: u8,
         depth: u8,
@@ -46,8 +51,10 @@ impl Model {
         let mut root = Cell {
             place: [0; 3],
             parent: 0,
+            bit: 0,
             attribute: 0,
             mask: 0,
+            drawn: 0,
             flags: Flags {
                 aperture: APERTURE_ALL,
                 two_sided: true,
@@ -60,11 +67,14 @@ impl Model {
             for (parent, cell) in levels[above].iter_mut().enumerate() {
                 let mask = occupy(above, cell) & all;
                 cell.mask = if mask == 0 { 1 } else { mask };
+                cell.drawn = cell.mask;
                 for bit in (0..subcells).filter(|bit| cell.mask >> bit & 1 != 0) {
                     let mut child = Cell {
                         place: child_place(rho, cell.place, bit),
                         parent,
+                        bit,
                         mask: 0,
+                        drawn: 0,
                         ..cell.clone()
                     };
                     dress(&mut child);
@@ -75,14 +85,24 @@ impl Model {
         }
         Self {
             rho,
+            shell: Shell::Fat,
             materials: std::vec![[255; 3]],
             levels,
         }
     }
 
     /// Random cells with random normals, all two-sided with open cones;
-    /// about `leaves` leaves.
+    /// about `leaves` leaves. Every third shell is thin.
     pub fn random(rng: &mut Rng, rho: u8, depth: u8, leaves: f64) -> Self {
+        let mut model = Self::random_fat(rng, rho, depth, leaves);
+        if rng.u8(..3) == 0 {
+            model.make_thin(rng);
+        }
+        model
+    }
+
+    /// The same, with a fat shell.
+    pub fn random_fat(rng: &mut Rng, rho: u8, depth: u8, leaves: f64) -> Self {
         let children = leaves.powf(1.0 / f64::from(depth.max(1)));
         let subcells = u32::from(rho).pow(3);
         let share = (children / f64::from(subcells)).min(1.0);
@@ -100,6 +120,78 @@ impl Model {
             },
             |cell| cell.attribute = attributes.u16(..1 << 13),
         )
+    }
+
+    /// Draws random children alone where drawing stops above the last level,
+    /// and takes all children from some cells above the last level.
+    pub fn make_thin(&mut self, rng: &mut Rng) {
+        self.shell = Shell::Thin;
+        let last = self.levels.len() - 1;
+        for cell in self.levels.iter_mut().rev().skip(2).flatten() {
+            cell.drawn = cell.mask & rng.u128(..);
+        }
+        if let Some(above) = last.checked_sub(1) {
+            let keeper = rng.usize(..self.levels[above].len());
+            let bare: Vec<bool> = (0..self.levels[above].len())
+                .map(|index| index != keeper && rng.u8(..6) == 0)
+                .collect();
+            self.levels[last].retain(|cell| !bare[cell.parent]);
+            for (cell, _) in self.levels[above]
+                .iter_mut()
+                .zip(bare)
+                .filter(|(_, bare)| *bare)
+            {
+                (cell.mask, cell.drawn) = (0, 0);
+            }
+        }
+        self.sort();
+    }
+
+    /// Puts cells into file order: by parents, drawn ones first, by bits.
+    fn sort(&mut self) {
+        for depth in 1..self.levels.len() {
+            let (above, below) = self.levels.split_at_mut(depth);
+            let (parents, cells) = (&above[depth - 1], &mut below[0]);
+            let mut order: Vec<usize> = (0..cells.len()).collect();
+            order.sort_by_key(|&index| {
+                let cell = &cells[index];
+                let is_drawn = parents[cell.parent].drawn >> cell.bit & 1 != 0;
+                (cell.parent, !is_drawn, cell.bit)
+            });
+            let sorted = order.iter().map(|&index| cells[index].clone()).collect();
+            *cells = sorted;
+            let mut places = std::vec![0; order.len()];
+            for (place, index) in order.into_iter().enumerate() {
+                places[index] = place;
+            }
+            for cell in below.get_mut(1).into_iter().flatten() {
+                cell.parent = places[cell.parent];
+            }
+        }
+    }
+
+    /// The model that a file cut behind a level is: without what is not drawn
+    /// there.
+    pub fn cut(&self, depth: usize) -> Self {
+        let mut cut = self.clone();
+        cut.levels.truncate(depth + 1);
+        if let Some(above) = depth.checked_sub(1) {
+            let (parents, leaves) = cut.levels.split_at_mut(depth);
+            let parents = &mut parents[above];
+            leaves[0].retain(|cell| parents[cell.parent].drawn >> cell.bit & 1 != 0);
+            for parent in parents {
+                parent.mask = parent.drawn;
+            }
+        }
+        for leaf in &mut cut.levels[depth] {
+            (leaf.mask, leaf.drawn) = (0, 0);
+        }
+        cut
+    }
+
+    /// Whether the level of a depth stores drawn records of its own.
+    pub fn stores_drawn(&self, depth: usize) -> bool {
+        self.shell == Shell::Thin && depth > 0 && depth + 1 < self.levels.len()
     }
 
     /// Gives every cell one of eight materials.
@@ -126,13 +218,13 @@ impl Model {
         cell.place.map(|place| place as f64 / across)
     }
 
-    fn record(&self, cell: &Cell) -> Vec<u16> {
+    fn record(&self, mask: u128, flags: Flags) -> Vec<u16> {
         let count = halves(self.rho);
         let mut record: Vec<u16> = (0..count.min(8))
-            .map(|half| (cell.mask >> (16 * half)) as u16)
+            .map(|half| (mask >> (16 * half)) as u16)
             .collect();
         record.resize(count, 0);
-        record[count - 1] |= cell.flags.to_last(self.rho);
+        record[count - 1] |= flags.to_last(self.rho);
         record
     }
 
@@ -151,8 +243,13 @@ impl Model {
             }
         }
         if depth >= 1 {
-            let parents = self.levels[depth - 1].iter();
-            extend_padded(&mut bytes, parents.flat_map(|cell| self.record(cell)));
+            let parents = || self.levels[depth - 1].iter();
+            let nodes = parents().flat_map(|cell| self.record(cell.mask, cell.flags));
+            extend_padded(&mut bytes, nodes);
+            if self.stores_drawn(depth) {
+                let drawn = parents().flat_map(|cell| self.record(cell.drawn, cell.flags));
+                extend_padded(&mut bytes, drawn);
+            }
         }
         extend_padded(&mut bytes, cells.iter().map(|cell| cell.attribute));
         bytes
@@ -167,6 +264,7 @@ impl Model {
         header[9] = self.rho;
         header[10] = self.depth();
         header[11] = 16;
+        header[12] = u8::from(self.shell == Shell::Thin);
         header[13] = 1;
         header[16..20].copy_from_slice(&(1u32 << 28).to_le_bytes());
         let mut sections = Vec::new();
