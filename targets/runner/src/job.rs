@@ -11,6 +11,7 @@ use crate::frame_file::FrameFile;
 use crate::host::{self, HostFrame};
 use crate::machine::Machine;
 use crate::measurement::Measurement;
+use crate::plugin::{CountsFile, Plugin};
 use crate::qemu::{self, Guest};
 use crate::qmp::Qmp;
 use crate::screen::{self, Screen};
@@ -60,8 +61,21 @@ pub fn run(job: &Job) -> Result<(), Error> {
     let frame_path = folder.path().join("frame");
     let socket = folder.path().join("qmp");
     frame_file.save(&frame_path)?;
-    let mut guest = Guest::start(machine, &firmware, &frame_path, &socket)?;
-    let (ending, differing) = listen(job, &mut guest, &host_frames)?;
+    let plugin = if machine.has_cycle_model {
+        Plugin::build(folder.path()).map_or_else(no_estimate, Some)
+    } else {
+        None
+    };
+    let plugin_option = plugin.as_ref().map(Plugin::option);
+    let mut guest = Guest::start(
+        machine,
+        &firmware,
+        &frame_path,
+        &socket,
+        plugin_option.as_deref(),
+    )?;
+    let mut counts_file = plugin.as_ref().map(Plugin::counts_file);
+    let (ending, differing) = listen(job, &mut guest, counts_file.as_mut(), &host_frames)?;
     let screen_result = if machine.has_screen {
         let dump = folder.path().join("screen.ppm");
         Qmp::connect(&socket)?.screendump(&dump)?;
@@ -86,26 +100,43 @@ pub fn run(job: &Job) -> Result<(), Error> {
     ))
 }
 
+/// A run without the plugin measures all else.
+fn no_estimate(error: Error) -> Option<Plugin> {
+    eprintln!("note: cycles are not estimated: {error}");
+    None
+}
+
 /// Follows the firmware to its end; returns the names of the views whose
 /// pictures differ from the host's.
 fn listen<'a>(
     job: &'a Job,
     guest: &mut Guest,
+    mut counts_file: Option<&mut CountsFile>,
     host_frames: &[HostFrame],
 ) -> Result<(Ending, Vec<&'a str>), Error> {
     let mut session = Session::new(job.machine.clock, job.views.len());
     let mut differing = Vec::new();
     let mut expected = job.views.iter().zip(host_frames);
+    let mut estimate = |between_readings| {
+        let next = |file: &mut &mut CountsFile| file.next(between_readings);
+        let counts = counts_file.as_mut().map(next).transpose()?;
+        Ok::<_, Error>(counts.map(|counts| counts.cycles()))
+    };
     loop {
         match session.take(&guest.line()?)? {
-            Event::Preparation => {}
+            Event::Greeting => {}
+            Event::Check { between_readings } => {
+                // The plugin must count these, too, as the timer does.
+                estimate(between_readings)?;
+            }
             Event::End(ending) => return Ok((ending, differing)),
             Event::View(result) => {
                 // The session lets through as many as there are.
                 let Some((view, host_frame)) = expected.next() else {
                     continue;
                 };
-                let measurement = measurement(job.machine, view, &result, host_frame);
+                let cycles = estimate(result.between_readings)?;
+                let measurement = measurement(job.machine, view, &result, cycles, host_frame);
                 print(&measurement, job.json)?;
                 if !measurement.agrees() {
                     differing.push(view.name.as_str());
@@ -119,13 +150,14 @@ fn measurement(
     machine: &Machine,
     view: &View,
     result: &ViewResult,
+    cycles_estimate: Option<u64>,
     host_frame: &HostFrame,
 ) -> Measurement {
     Measurement {
         machine: machine.name.to_owned(),
         view: view.name.clone(),
         instructions: result.instructions,
-        cycles_estimate: None,
+        cycles_estimate,
         frame_hash: result.frame_hash,
         host_frame_hash: host_frame.hash,
         stack_bytes: result.stack_bytes,

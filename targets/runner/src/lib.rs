@@ -6,18 +6,23 @@
 //!                                  +-> qemu: firmware -> session -----+
 //!                                            qmp -> screen (5:6:5) ---+
 //! ```
+//!
+//! Where a machine has a cycle model, QEMU runs `../plugin/sa1110.c`, which
+//! counts; plugin reads the counts, and cycles makes an estimate of them.
 
 #![forbid(unsafe_code)]
 
 pub mod aligned;
 pub mod armv4;
 pub mod clock;
+pub mod cycles;
 pub mod firmware;
 pub mod frame_file;
 pub mod host;
 pub mod job;
 pub mod machine;
 pub mod measurement;
+pub mod plugin;
 pub mod qemu;
 pub mod qmp;
 pub mod screen;

@@ -52,6 +52,8 @@ pub struct Machine {
     pub clock: Clock,
     /// Whether the last picture can be seen.
     pub has_screen: bool,
+    /// Whether [`crate::cycles`] is a model of it.
+    pub has_cycle_model: bool,
 }
 
 /// All machines.
@@ -68,6 +70,7 @@ pub static MACHINES: [Machine; 2] = [
             tick_ns: 1000,
         },
         has_screen: true,
+        has_cycle_model: true,
     },
     Machine {
         name: "m3",
@@ -81,6 +84,7 @@ pub static MACHINES: [Machine; 2] = [
             tick_ns: 40,
         },
         has_screen: false,
+        has_cycle_model: false,
     },
 ];
 

@@ -11,10 +11,20 @@ use rhogrid_targets::job::{Job, run};
 use rhogrid_targets::machine::{self, Machine};
 use rhogrid_targets::views::{self, View};
 
+/// How far to trust the cycles.
+const CYCLES: &str = "\
+Instructions are exact. Cycles are an estimate, for sa1110 only: instructions,
+waits for loads and products, words of multiple transfers, taken branches, and
+28 cycles for each miss of the SA-1110's caches, all counted in QEMU. Assumed
+are the memory, that it takes stores at any rate, and how large the factors of
+products are; targets/runner/src/cycles.rs has the model and its sources.
+Without a C compiler, or a QEMU that loads the counting plugin, there is no
+estimate (JSON: null), and stderr says why.";
+
 /// Draws an asset on a machine under QEMU, measures every view, and compares
 /// its pictures with the host's.
 #[derive(Parser)]
-#[command(name = "targets/run", bin_name = "targets/run")]
+#[command(name = "targets/run", bin_name = "targets/run", after_help = CYCLES)]
 struct Arguments {
     /// The machine: sa1110 or m3
     #[arg(value_parser = machine::find)]

@@ -2,6 +2,8 @@
 
 use serde::{Serialize, Serializer};
 
+use crate::cycles::CLOCK_MHZ;
+
 /// What was measured for one view.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Measurement {
@@ -11,7 +13,7 @@ pub struct Measurement {
     pub view: String,
     /// Instructions of the draw call.
     pub instructions: u64,
-    /// Estimated cycles of a SA-1110; nothing estimates them yet.
+    /// Cycles, estimated by [`crate::cycles`]; `None` without its counts.
     pub cycles_estimate: Option<u64>,
     /// Hash of the machine's picture.
     #[serde(serialize_with = "hex")]
@@ -40,8 +42,15 @@ impl Measurement {
         } else {
             format!("DIFFERS from the host's {:08x}", self.host_frame_hash)
         };
+        let cycles = self.cycles_estimate.map_or_else(String::new, |cycles| {
+            format!(
+                "  ~{:.1} M cycles ({} ms at {CLOCK_MHZ} MHz)",
+                cycles as f64 / 1e6,
+                (cycles + CLOCK_MHZ * 500) / (CLOCK_MHZ * 1000)
+            )
+        });
         format!(
-            "{} {:<9} {:>11} instructions  {:>6} bytes of stack  frame {:08x} {agreement}",
+            "{} {:<9} {:>11} instructions{cycles}  {:>6} bytes of stack  frame {:08x} {agreement}",
             self.machine, self.view, self.instructions, self.stack_bytes, self.frame_hash
         )
     }
@@ -72,6 +81,20 @@ mod tests {
             r#""host_frame_hash":"00abcdef","stack_bytes":112}"#
         );
         assert_eq!(json, expected);
+    }
+
+    #[test]
+    fn an_estimate_is_a_number_and_is_marked_as_one_for_people() {
+        let mut measurement = measurement();
+        assert!(!measurement.line().contains("cycles"));
+        measurement.cycles_estimate = Some(3_750_123);
+        let line = measurement.line();
+        assert!(
+            line.contains("  ~3.8 M cycles (18 ms at 206 MHz)  "),
+            "{line}"
+        );
+        let json = serde_json::to_string(&measurement).expect("serialises");
+        assert!(json.contains(r#""cycles_estimate":3750123,"#), "{json}");
     }
 
     #[test]

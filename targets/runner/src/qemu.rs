@@ -1,6 +1,6 @@
 //! A machine under QEMU: started, listened to, and never left behind.
 
-use std::ffi::OsString;
+use std::ffi::{OsStr, OsString};
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
@@ -39,6 +39,28 @@ pub fn check(machine: &Machine) -> Result<(), Error> {
     Ok(())
 }
 
+/// Checks that QEMU takes a `-plugin` option; the plugin must end QEMU with
+/// code 0.
+///
+/// # Errors
+/// When not; in QEMU's words.
+pub fn check_plugin(option: &OsStr) -> Result<(), Error> {
+    let output = Command::new(QEMU)
+        .args(["-machine", "none", "-display", "none", "-plugin"])
+        .arg(option)
+        .stdin(Stdio::null())
+        .output()
+        .map_err(|error| failure(format!("cannot run {QEMU}: {error}"), ""))?;
+    if !output.status.success() {
+        let complaint = String::from_utf8_lossy(&output.stderr);
+        return Err(failure(
+            format!("this {QEMU} does not load the plugin: {}", complaint.trim()),
+            "use QEMU 7.2 with plugins enabled, as Debian's is",
+        ));
+    }
+    Ok(())
+}
+
 /// Whether the output of `-machine help` lists a machine.
 fn has_machine(help: &str, name: &str) -> bool {
     help.lines()
@@ -55,7 +77,7 @@ pub struct Guest {
 
 impl Guest {
     /// Starts a machine with its firmware and a frame file in memory; QMP
-    /// listens on `socket`.
+    /// listens on `socket`, and the option `plugin`, if any, loads a plugin.
     ///
     /// # Errors
     /// When QEMU cannot be started.
@@ -64,9 +86,15 @@ impl Guest {
         firmware: &Path,
         frame_file: &Path,
         socket: &Path,
+        plugin: Option<&OsStr>,
     ) -> Result<Self, Error> {
         let mut child = Command::new(QEMU)
             .args(arguments(machine, firmware, frame_file, socket))
+            .args(
+                plugin
+                    .iter()
+                    .flat_map(|option| [OsStr::new("-plugin"), option]),
+            )
             .stdin(Stdio::null())
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())
@@ -172,7 +200,7 @@ fn arguments(
 
 /// A path inside one of QEMU's comma-separated options: its own commas are
 /// doubled.
-fn option(before: &str, path: &Path, after: &str) -> OsString {
+pub fn option(before: &str, path: &Path, after: &str) -> OsString {
     let path = path.to_string_lossy().replace(',', ",,");
     format!("{before}{path}{after}").into()
 }

@@ -39,6 +39,8 @@ struct Reading {
 pub struct ViewResult {
     /// Instructions of the draw call.
     pub instructions: u64,
+    /// The same and what reading the timer takes.
+    pub between_readings: u64,
     /// Hash of the picture.
     pub frame_hash: u32,
     /// Stack below the caller's frame.
@@ -75,8 +77,13 @@ pub struct Session {
 /// What a line meant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Event {
-    /// Nothing to report.
-    Preparation,
+    /// The firmware has said who it is.
+    Greeting,
+    /// The timer was checked.
+    Check {
+        /// Instructions between two readings of it.
+        between_readings: u64,
+    },
     /// A view is measured.
     View(ViewResult),
     /// All views are.
@@ -121,12 +128,13 @@ impl Session {
                 if !self.greeted && protocol == PROTOCOL && views == self.views =>
             {
                 self.greeted = true;
-                Ok(Event::Preparation)
+                Ok(Event::Greeting)
             }
             _ if !self.greeted => Err(unexpected()),
             Line::Read { start, end } => {
-                self.reading = Some(self.instructions(start, end)?);
-                Ok(Event::Preparation)
+                let between_readings = self.instructions(start, end)?;
+                self.reading = Some(between_readings);
+                Ok(Event::Check { between_readings })
             }
             Line::Spin { loops, start, end } => self.check_spin(loops, start, end),
             Line::View(reading) if reading.index == self.next_view => {
@@ -145,26 +153,27 @@ impl Session {
     /// same beside `SPIN_INSTRUCTIONS` for each round.
     fn check_spin(&mut self, loops: u32, start: u32, end: u32) -> Result<Event, Error> {
         let loop_instructions = SPIN_INSTRUCTIONS * u64::from(loops);
-        let around = self
-            .instructions(start, end)?
+        let between_readings = self.instructions(start, end)?;
+        let around = between_readings
             .checked_sub(loop_instructions)
             .ok_or_else(not_counting)?;
         if *self.around_spin.get_or_insert(around) != around {
             return Err(not_counting());
         }
-        Ok(Event::Preparation)
+        Ok(Event::Check { between_readings })
     }
 
     fn view(&self, reading: &Reading) -> Result<ViewResult, Error> {
-        let instructions = self.instructions(reading.start, reading.end)?;
+        let between_readings = self.instructions(reading.start, reading.end)?;
         let reading_cost = self.reading.ok_or_else(not_counting)?;
         if self.around_spin.is_none() {
             return Err(not_counting());
         }
         Ok(ViewResult {
-            instructions: instructions
+            instructions: between_readings
                 .checked_sub(reading_cost)
                 .ok_or_else(not_counting)?,
+            between_readings,
             frame_hash: reading.frame_hash,
             stack_bytes: reading.stack_bytes,
         })
@@ -247,6 +256,7 @@ mod tests {
         let view = ViewResult {
             // floor(1702511 / 1.024) - floor(4 / 1.024) - 6.
             instructions: 1_662_608 - 3 - 6,
+            between_readings: 1_662_608 - 3,
             frame_hash: 0x302f_2217,
             stack_bytes: 112,
         };
@@ -256,7 +266,9 @@ mod tests {
             height: 320,
         };
         assert_eq!(events[5], Event::End(shown));
-        assert!(events[..4].iter().all(|event| *event == Event::Preparation));
+        let checks = [6, 11, 2009].map(|between_readings| Event::Check { between_readings });
+        assert_eq!(events[0], Event::Greeting);
+        assert_eq!(events[1..4], checks);
     }
 
     #[test]

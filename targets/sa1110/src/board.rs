@@ -1,5 +1,8 @@
 //! The `versatilepb` board: SP804 timer, PL110 screen, stack, start-up. All
 //! unsafe code of this firmware.
+//!
+//! Its timer functions carry the marks by which `../plugin/sa1110.c` knows
+//! what to count: instructions without effect that no compiler emits.
 
 use core::arch::{asm, global_asm};
 use core::fmt;
@@ -88,16 +91,20 @@ impl Board for Versatile {
         write_register(TIMER_CONTROL, 0);
         write_register(TIMER_LOAD, u32::MAX);
         write_register(TIMER_CONTROL, TIMER_RUN);
+        // SAFETY: no effect; the mark "the next reading begins an interval".
+        unsafe { asm!("orr r0, r0, #0", options(nostack, preserves_flags)) }
     }
 
     #[inline(never)]
     fn ticks(&mut self) -> u32 {
         let left: u32;
-        // SAFETY: reads a device register. Not `nomem`, which makes it the
+        // SAFETY: reads a device register; the second instruction has no
+        // effect but is the mark "a reading". Not `nomem`, which makes it the
         // barrier that the trait asks for.
         unsafe {
             asm!(
                 "ldr {left}, [{address}]",
+                "bic {left}, {left}, #0",
                 address = in(reg) TIMER_VALUE,
                 left = out(reg) left,
                 options(nostack, preserves_flags)
