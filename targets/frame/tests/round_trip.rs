@@ -85,7 +85,7 @@ fn wrong_words_are_refused() {
         Frame::open(&bytes).expect_err("wrong")
     };
     assert_eq!(with(0, 0), FrameError::Magic);
-    assert_eq!(with(1, 2), FrameError::Version);
+    assert_eq!(with(1, 1), FrameError::Version);
     assert_eq!(with(2, u32::MAX), FrameError::Truncated);
     assert_eq!(with(2, 64), FrameError::Layout);
     assert_eq!(with(4, u32::MAX), FrameError::Layout);
