@@ -65,22 +65,46 @@ fn plain_row(line: &[u32], shader: &Shader<'_>, colours: &mut [u16]) {
     }
 }
 
+/// Leaves out what is empty at the row's two ends, four pixels at a time.
 fn resolve_row(lines: [&[u32]; 3], gap: Gap, shader: &Shader<'_>, colours: &mut [u16]) {
+    let [above, line, _] = lines;
+    // A hole has something on two sides, and so beside it or above it.
+    let is_empty =
+        |([a, b, c, d], [e, f, g, h]): (&[u32; 4], &[u32; 4])| a | b | c | d | e | f | g | h == 0;
+    let fours = above.as_chunks().0.iter().zip(line.as_chunks().0);
+    let ahead = fours.take_while(|&four| is_empty(four)).count();
+    let fours = above.as_rchunks().1.iter().zip(line.as_rchunks().1);
+    let behind = fours.rev().take_while(|&four| is_empty(four)).count();
+    // Lines begin one pixel before the colours and end one behind them.
+    let first = (4 * ahead).saturating_sub(2).min(colours.len());
+    let rest = colours.len() - first;
+    let last = (4 * behind).saturating_sub(2).min(rest);
+    let (before, inner) = colours.split_at_mut(first);
+    let (inner, after) = inner.split_at_mut(rest - last);
+    before.fill(0);
+    after.fill(0);
+    let lines = lines.map(|line| line.get(first..).unwrap_or(&[]));
+    resolve_pixels(lines, gap, shader, inner);
+}
+
+/// Most pixels are far from any hole: their left and upper neighbours are not
+/// nearer than by the least gap, and nothing else is looked at.
+#[inline(always)]
+fn resolve_pixels(lines: [&[u32]; 3], gap: Gap, shader: &Shader<'_>, colours: &mut [u16]) {
     let [above, line, below] = lines;
     let [mut left, mut own, ref rest @ ..] = *line else {
         return;
     };
     let sides = above.iter().zip(below).skip(1);
     for ((colour, &right), (above, below)) in colours.iter_mut().zip(rest).zip(sides) {
-        let limit = gap.limit(own);
-        let is_plain = left.min(right) <= limit && (*above).min(*below) <= limit;
-        let closed = match is_plain {
-            true => None,
-            false => hole([left, right, *above, *below], limit, gap),
-        };
-        *colour = match closed {
-            None => shader.colour_of(own),
-            Some([first, second]) => mean(shader.colour_of(first), shader.colour_of(second)),
+        let least = gap.least(own);
+        *colour = if left <= least && *above <= least {
+            shader.colour_of(own)
+        } else {
+            match hole([left, right, *above, *below], gap.limit(own), gap) {
+                None => shader.colour_of(own),
+                Some([first, second]) => mean(shader.colour_of(first), shader.colour_of(second)),
+            }
         };
         (left, own) = (own, right);
     }
@@ -104,6 +128,16 @@ fn depth_row(lines: [&[u32]; 3], repair: Option<Gap>, depths: &mut [u16]) {
 }
 
 impl Gap {
+    /// A lower bound of [`Gap::limit`].
+    #[inline(always)]
+    fn least(self, word: u32) -> u32 {
+        if word == 0 {
+            0
+        } else {
+            word.saturating_add(self.base)
+        }
+    }
+
     /// What a neighbour exceeds if it is nearer by the gap.
     #[inline(always)]
     fn limit(self, word: u32) -> u32 {
@@ -138,3 +172,6 @@ fn hole(neighbours: [u32; 4], limit: u32, gap: Gap) -> Option<[u32; 2]> {
 fn mean(a: u16, b: u16) -> u16 {
     (a & b) + (((a ^ b) & 0xf7de) >> 1)
 }
+
+#[cfg(test)]
+mod tests;
