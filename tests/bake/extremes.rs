@@ -8,7 +8,7 @@ use rhogrid::geometry::{Cloud, Geometry, Mesh, OrientedPoint};
 use rhogrid::import::procedural::shapes;
 
 use super::cells::{cells, places};
-use super::{Random, baked, moved, options, soup, thin};
+use super::{Random, baked, moved, options, soup, sphere_of_points, thin};
 
 /// A shape on a lattice of 2^-20, so that moving it far away is exact.
 fn lattice_torus() -> Mesh {
@@ -228,20 +228,7 @@ fn clouds_fill_the_cells_of_their_points() {
 /// Points of a sphere close it, however fine the cells.
 #[test]
 fn clouds_close_the_surface_between_their_points() {
-    // A spiral that gives every point the same share of the sphere.
-    let points = (0..4000).map(|index| {
-        let height = 1.0 - (f64::from(index) + 0.5) / 2000.0;
-        let (sin, cos) = (f64::from(index) * 2.399_963_229_728_653).sin_cos();
-        let around = (1.0 - height * height).sqrt();
-        let position = DVec3::new(around * cos, height, around * sin);
-        OrientedPoint {
-            position,
-            normal: position.as_vec3(),
-        }
-    });
-    let cloud = Geometry::Cloud(Cloud {
-        points: points.collect(),
-    });
+    let cloud = Geometry::Cloud(sphere_of_points());
     let cells = |geometry: &Geometry| {
         let grid = bake::grid(geometry, &options(3, 3), &|_| {}).unwrap();
         let bytes = bake::writer::to_bytes(&grid).unwrap();

@@ -12,7 +12,7 @@ mod twin;
 use glam::{DVec3, Vec3};
 use rhogrid::asset_file::AssetFile;
 use rhogrid::bake::{self, GridOptions, writer};
-use rhogrid::geometry::{Geometry, Material, Mesh, Triangle};
+use rhogrid::geometry::{Cloud, Geometry, Material, Mesh, OrientedPoint, Triangle};
 use rhogrid_core::asset::Shell;
 
 /// A fat shell.
@@ -85,6 +85,39 @@ fn plate(gap: f64) -> Mesh {
         [back[0], back[2], back[1]],
         [back[0], back[3], back[2]],
     ])
+}
+
+/// An ordinary triangle, three of no area, a needle and a tiny one.
+fn slivers(random: &mut Random) -> Vec<[DVec3; 3]> {
+    let triangle = |index| {
+        let (a, b, c) = (random.point(), random.point(), random.point());
+        match index {
+            0 => [a, b, c],
+            1 => [a, b, a.lerp(b, 0.4)],
+            2 => [a, b, a.lerp(b, 0.4) + c * 1e-5],
+            3 => [a, a, b],
+            4 => [a, a, a],
+            _ => [a, a + b * 1e-4, a + c * 1e-4],
+        }
+    };
+    (0..6).map(triangle).collect()
+}
+
+/// 4000 points on a sphere, on a spiral that gives each the same share of it.
+fn sphere_of_points() -> Cloud {
+    let points = (0..4000).map(|index| {
+        let height = 1.0 - (f64::from(index) + 0.5) / 2000.0;
+        let (sin, cos) = (f64::from(index) * 2.399_963_229_728_653).sin_cos();
+        let around = (1.0 - height * height).sqrt();
+        let position = DVec3::new(around * cos, height, around * sin);
+        OrientedPoint {
+            position,
+            normal: position.as_vec3(),
+        }
+    });
+    Cloud {
+        points: points.collect(),
+    }
 }
 
 /// Marsaglia's xorshift64, as numbers in [-1, 1).

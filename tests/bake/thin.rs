@@ -5,13 +5,13 @@ use std::collections::HashSet;
 use glam::DVec3;
 use rhogrid::asset_file::AssetFile;
 use rhogrid::bake::{self, writer};
-use rhogrid::geometry::{Cloud, Geometry, Mesh, OrientedPoint};
+use rhogrid::geometry::{Geometry, Mesh};
 use rhogrid::import::procedural::{demo, shapes};
 use rhogrid_core::asset::{Grid, Shell};
 
 use super::cells::{cells, drawn_places, places};
 use super::twin::{Face, LEVELS, TIE, TOUCH, bounds, check_sample, faces, nearest, torus, touches};
-use super::{Random, baked, moved, options, plate, soup, thin};
+use super::{Random, baked, moved, options, plate, slivers, soup, sphere_of_points, thin};
 
 type Place = [u32; 3];
 
@@ -144,18 +144,7 @@ fn flat_shapes_on_boundaries_have_the_twins_thin_subset() {
 fn slivers_and_degenerate_triangles_have_the_twins_thin_subset() {
     let mut random = Random(0x6a09_e667_f3bc_c908);
     for round in 0..12 {
-        let mut triangles = Vec::new();
-        for index in 0..6 {
-            let (a, b, c) = (random.point(), random.point(), random.point());
-            triangles.push(match index {
-                0 => [a, b, c],
-                1 => [a, b, a.lerp(b, 0.4)],
-                2 => [a, b, a.lerp(b, 0.4) + c * 1e-5],
-                3 => [a, a, b],
-                4 => [a, a, a],
-                _ => [a, a + b * 1e-4, a + c * 1e-4],
-            });
-        }
+        let triangles = slivers(&mut random);
         let (rho, level) = LEVELS[round % 4];
         check(
             &format!("soup {round}"),
@@ -325,19 +314,7 @@ fn nothing_slips_through_the_demo() {
 /// Tiles of a dense cloud are closed, too.
 #[test]
 fn nothing_slips_through_a_cloud() {
-    let points = (0..4000).map(|index| {
-        let height = 1.0 - (f64::from(index) + 0.5) / 2000.0;
-        let (sin, cos) = (f64::from(index) * 2.399_963_229_728_653).sin_cos();
-        let around = (1.0 - height * height).sqrt();
-        let position = DVec3::new(around * cos, height, around * sin);
-        OrientedPoint {
-            position,
-            normal: position.as_vec3(),
-        }
-    });
-    let cloud = Geometry::Cloud(Cloud {
-        points: points.collect(),
-    });
+    let cloud = Geometry::Cloud(sphere_of_points());
     let baked = |options| {
         let grid = bake::grid(&cloud, &options, &|_| {}).unwrap();
         AssetFile::new(&writer::to_bytes(&grid).unwrap()).unwrap()

@@ -8,7 +8,7 @@ use rhogrid::import::procedural::shapes;
 use rhogrid_core::normal::{CODE_MASK, decode};
 
 use super::cells::cells;
-use super::{Random, baked, moved, options, plate, soup};
+use super::{Random, baked, moved, options, plate, slivers, soup};
 
 /// A surface that comes nearer to a cell than this touches it; the shapes
 /// here leave nothing between this and rounding.
@@ -233,18 +233,7 @@ fn flat_shapes_on_boundaries_have_the_twins_cells_and_samples() {
 fn random_slivers_and_degenerate_triangles_have_the_twins_cells_and_samples() {
     let mut random = Random(0x9e37_79b9_7f4a_7c15);
     for round in 0..12 {
-        let mut triangles = Vec::new();
-        for index in 0..6 {
-            let (a, b, c) = (random.point(), random.point(), random.point());
-            triangles.push(match index {
-                0 => [a, b, c],
-                1 => [a, b, a.lerp(b, 0.4)],
-                2 => [a, b, a.lerp(b, 0.4) + c * 1e-5],
-                3 => [a, a, b],
-                4 => [a, a, a],
-                _ => [a, a + b * 1e-4, a + c * 1e-4],
-            });
-        }
+        let triangles = slivers(&mut random);
         let (rho, level) = LEVELS[round % 4];
         check(
             &format!("soup {round}"),
