@@ -5,9 +5,10 @@
 //! [`GUARD`] rows lie above and below, so that the neighbourhood of any
 //! sample near the strip is a [`Window`]: 16 rows of 16 columns in one slice
 //! of constant length, which needs no test for each sample. Columns beyond
-//! the strip's are guards, too: what runs over on the right side of a row and
-//! what runs over on the left side of the next never meet, because samples
-//! keep within [`REACH`] pixels of the strip.
+//! the strip's are guards, too. Samples keep within [`REACH`] pixels and seven
+//! more of the strip: what runs over on the right side of a row ends at column
+//! 254 and what runs over on the left side of the next one begins at column
+//! 241, so that the pixels right next to the strip, 240 and 255, are their own.
 
 use core::hint::black_box;
 use core::ops::Range;
@@ -18,13 +19,10 @@ use crate::target::Rect;
 pub(crate) const PITCH: usize = 256;
 /// Rows above and below the strip.
 const GUARD: usize = 16;
-/// Columns of a strip that is as wide as the picture, at most.
-pub(crate) const PICTURE_COLUMNS: u16 = 240;
-/// Columns of other strips, at most: the pixels beside them are looked at,
-/// and nothing that runs over on the other side may fall on those.
-pub(crate) const STRIP_COLUMNS: u16 = 232;
+/// Columns of the widest strip.
+pub(crate) const STRIP_COLUMNS: u16 = 240;
 /// How far from the strip the centre of a window may lie, pixels.
-pub(crate) const REACH: i32 = 7;
+pub(crate) const REACH: i32 = 8;
 /// Words of a window: 16 rows.
 pub(crate) const WINDOW: usize = 16 * PITCH;
 /// The window's pixel that its centre falls on, both ways.
@@ -127,20 +125,6 @@ impl<'a> Canvas<'a> {
             .add([column, column + columns as i32 - 1], [row, row]);
         let start = ((row + GUARD as i32) * PITCH as i32 + column) as usize;
         self.words.get_mut(start..start + columns)
-    }
-
-    /// Takes away what was drawn beside the picture, which has so many columns.
-    pub fn forget_outside(&mut self, columns: u16) {
-        let width = self.strip.width();
-        let ends = [self.strip.left == 0, self.strip.right == columns];
-        for row in self.words.chunks_exact_mut(PITCH) {
-            // The pixel before a row is the last word of the one above.
-            for (is_end, column) in ends.into_iter().zip([PITCH - 1, width]) {
-                if is_end && let Some(pixel) = row.get_mut(column) {
-                    *pixel = 0;
-                }
-            }
-        }
     }
 
     /// Pixels of a row of the strip, with one more on either side, and those

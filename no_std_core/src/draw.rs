@@ -77,10 +77,9 @@ pub fn draw(
     let plan = Plan::new(grid, camera, quality, &projection);
     let shader = Shader::new(light, grid.materials(), shades);
     let mut stats = Stats::default();
-    for strip in target.strips(camera.width) {
+    for strip in target.strips() {
         let mut canvas = Canvas::new(target.canvas, strip);
         traverse(grid, camera, &projection, &plan, &mut canvas, &mut stats);
-        canvas.forget_outside(camera.width);
         resolve(&canvas, plan.repair, &shader, &mut target.picture);
     }
     stats

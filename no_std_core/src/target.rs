@@ -4,7 +4,7 @@
 //! checked once, here.
 
 pub use crate::canvas::canvas_len;
-use crate::canvas::{PICTURE_COLUMNS, STRIP_COLUMNS, canvas_rows};
+use crate::canvas::{STRIP_COLUMNS, canvas_rows};
 use core::ops::Range;
 
 use crc::{CRC_32_ISO_HDLC, Crc, Table};
@@ -143,22 +143,17 @@ impl<'a> Target<'a> {
         })
     }
 
-    /// The strips that the band of a picture is drawn in.
-    pub(crate) fn strips(&self, picture_columns: u16) -> impl Iterator<Item = Rect> + use<> {
+    /// The strips that the band is drawn in.
+    pub(crate) fn strips(&self) -> impl Iterator<Item = Rect> + use<> {
         let band = self.picture.band;
-        let is_whole = band.width() == usize::from(picture_columns);
-        let most = match is_whole && picture_columns <= PICTURE_COLUMNS {
-            true => PICTURE_COLUMNS,
-            false => STRIP_COLUMNS,
-        };
         let rows = canvas_rows(self.canvas.len()).clamp(1, usize::from(MAX_SIZE)) as u16;
         let tops = (band.top..band.bottom).step_by(usize::from(rows));
         tops.flat_map(move |top| {
-            let lefts = (band.left..band.right).step_by(usize::from(most));
+            let lefts = (band.left..band.right).step_by(usize::from(STRIP_COLUMNS));
             lefts.map(move |left| Rect {
                 left,
                 top,
-                right: band.right.min(left + most),
+                right: band.right.min(left + STRIP_COLUMNS),
                 bottom: band.bottom.min(top.saturating_add(rows)),
             })
         })

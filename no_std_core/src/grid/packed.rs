@@ -12,7 +12,6 @@
 //! its field. Shifted right by 20 and masked, a place is the pixel's index in
 //! the window; shifted left by 16 it is what the canvas compares.
 
-use super::facing::Normals;
 use super::lists::{CHUNK_CELLS, COUNTS, LISTS, MAX_CHUNKS, chunk, chunk_rows, chunks};
 use crate::canvas::{WINDOW_CENTRE, Window};
 
@@ -134,7 +133,8 @@ fn points<const WIDE: bool>(
     }
 }
 
-/// Draws the children of a cell as points; gives how many there are.
+/// Draws the children of a cell as points; gives how many there are. `seen`
+/// tells how a sample shows.
 #[inline(never)]
 pub(super) fn block<const RHO: u8, const WIDE: bool>(
     place: u32,
@@ -142,37 +142,7 @@ pub(super) fn block<const RHO: u8, const WIDE: bool>(
     attributes: &[u16],
     subcells: &Subcells,
     window: &mut Window,
-) -> usize {
-    let mut rest = attributes;
-    for (index, &offset) in (0..chunks(RHO)).zip(&subcells.chunks) {
-        let bits = chunk::<RHO>(record, index) % 512;
-        let count = usize::from(COUNTS[bits]);
-        let Some((own, others)) = rest.split_at_checked(count) else {
-            break;
-        };
-        rest = others;
-        let place = place.wrapping_add(offset);
-        points::<WIDE>(
-            own,
-            LISTS[bits],
-            place,
-            &subcells.cells,
-            window,
-            |attribute| attribute,
-        );
-    }
-    attributes.len() - rest.len()
-}
-
-/// As [`block`], for sheets: a sample that faces away shows its other side.
-#[inline(never)]
-pub(super) fn block_turned<const RHO: u8, const WIDE: bool>(
-    place: u32,
-    record: &[u16],
-    attributes: &[u16],
-    subcells: &Subcells,
-    window: &mut Window,
-    normals: &Normals,
+    seen: impl Fn(u16) -> u16,
 ) -> usize {
     let mut rest = attributes;
     for (index, &offset) in (0..chunks(RHO)).zip(&subcells.chunks) {
@@ -182,8 +152,7 @@ pub(super) fn block_turned<const RHO: u8, const WIDE: bool>(
         };
         rest = others;
         let place = place.wrapping_add(offset);
-        let turned = |attribute| normals.turned(attribute);
-        points::<WIDE>(own, LISTS[bits], place, &subcells.cells, window, turned);
+        points::<WIDE>(own, LISTS[bits], place, &subcells.cells, window, &seen);
     }
     attributes.len() - rest.len()
 }

@@ -3,7 +3,7 @@
 use super::facing::Normals;
 use super::footprint::Place;
 use super::lists::{self, COUNTS, LISTS};
-use super::packed::{HALF_LEFT, Step, Subcells, block, block_turned};
+use super::packed::{HALF_LEFT, Step, Subcells, block};
 use super::tables::Point;
 use super::traverse::{Cell, Frame, Output, Record, records};
 use crate::asset::Shell;
@@ -12,10 +12,18 @@ use crate::canvas::Window;
 use crate::numbers::SCREEN_BITS;
 use crate::reciprocal::{Reciprocal, reciprocal};
 
-/// Centres of a packed subtree stay within this of its own, Q20.12 pixels:
-/// a window reaches seven pixels beyond its middle one; rounding and the
-/// fraction need the rest.
-const REACH: i32 = 6 * (1 << SCREEN_BITS) + (7 << SCREEN_BITS) / 8;
+/// Centres of a packed subtree stay within this of its own, Q20.12 pixels,
+/// where points are one pixel wide.
+///
+/// A window reaches eight pixels back and seven beyond its middle pixel, in
+/// which the subtree's own centre lies, rounded to sixteenths: from its left
+/// side on, 8 to 9. With at most 10/32 for the rounding of two levels,
+/// 9 + 6 5/8 + 10/32 stays below 16. A subtree beyond [`crate::canvas::REACH`]
+/// of the strip, 8 pixels, stays clear of the pixel next to the strip.
+const REACH: i32 = (6 << SCREEN_BITS) + (5 << SCREEN_BITS) / 8;
+/// The same where points are two pixels wide: half a pixel to the left, and
+/// one more to the right.
+const WIDE_REACH: i32 = (6 << SCREEN_BITS) + (3 << SCREEN_BITS) / 16;
 
 /// What a subtree's depths may be off by rounding, at most one for each step
 /// and chunk.
@@ -43,7 +51,7 @@ impl Steps {
     /// Whether a subtree of `cells` an axis around a place fits a window and
     /// the depth field.
     #[inline(always)]
-    fn fit(&self, place: &Place, cells: i32) -> bool {
+    fn fit(&self, place: &Place, cells: i32, is_narrow: bool) -> bool {
         let reach = |of: fn(&Step) -> i32| {
             let sum = |sum: i32, step| sum.saturating_add(of(step).saturating_abs());
             // Beyond this nothing fits; below it, the product does.
@@ -51,8 +59,9 @@ impl Steps {
         };
         let depth = reach(|step| step.depth) + DEPTH_ROUNDING;
         let middle = i32::from(place.depth);
-        reach(|step| step.x) <= REACH
-            && reach(|step| step.y) <= REACH
+        let limit = if is_narrow { REACH } else { WIDE_REACH };
+        reach(|step| step.x) <= limit
+            && reach(|step| step.y) <= limit
             && middle > depth
             && middle + depth <= 65535
     }
@@ -127,7 +136,8 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
         let inverse = reciprocal(cell.centre.w as u32);
         let place = Place::of(self.projection, cell.centre, inverse);
         let steps = self.steps(cell.depth + 1, &place, inverse);
-        if !steps.fit(&place, i32::from(RHO)) {
+        let is_narrow = self.is_narrow(cell, cell.depth + 1, normals);
+        if !steps.fit(&place, i32::from(RHO), is_narrow) {
             return false;
         }
         if !self.is_near_strip(&place, output) {
@@ -147,7 +157,6 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
         else {
             return true;
         };
-        let is_narrow = self.is_narrow(cell, cell.depth + 1, normals);
         let start = if is_narrow {
             start
         } else {
@@ -179,7 +188,8 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
         let inverse = reciprocal(cell.centre.w as u32);
         let place = Place::of(self.projection, cell.centre, inverse);
         let steps = self.steps(cell.depth + 2, &place, inverse);
-        if !steps.fit(&place, rho * rho) {
+        let is_narrow = self.is_narrow(cell, cell.depth + 2, normals);
+        if !steps.fit(&place, rho * rho, is_narrow) {
             return false;
         }
         if !self.is_near_strip(&place, output) {
@@ -193,7 +203,6 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
         let Scratch { blocks, leaves } = &mut *output.scratch;
         blocks.fill::<RHO>(&steps.times(rho).0);
         leaves.fill::<RHO>(&steps.0);
-        let is_narrow = self.is_narrow(cell, cell.depth + 2, normals);
         let mut start = place.step().packed_in_window();
         if !is_narrow {
             start = start.wrapping_add(HALF_LEFT);
@@ -253,14 +262,19 @@ fn draw_block<const RHO: u8>(
     window: &mut Window,
     (is_narrow, normals): (bool, Option<&Normals>),
 ) -> usize {
+    let same = |attribute| attribute;
     match (normals, is_narrow) {
-        (None, true) => block::<RHO, false>(place, record, attributes, leaves, window),
-        (None, false) => block::<RHO, true>(place, record, attributes, leaves, window),
-        (Some(normals), true) => {
-            block_turned::<RHO, false>(place, record, attributes, leaves, window, normals)
-        }
-        (Some(normals), false) => {
-            block_turned::<RHO, true>(place, record, attributes, leaves, window, normals)
+        (None, true) => block::<RHO, false>(place, record, attributes, leaves, window, same),
+        (None, false) => block::<RHO, true>(place, record, attributes, leaves, window, same),
+        (Some(normals), is_narrow) => {
+            let turned = |attribute| normals.turned(attribute);
+            match is_narrow {
+                true => block::<RHO, false>(place, record, attributes, leaves, window, turned),
+                false => block::<RHO, true>(place, record, attributes, leaves, window, turned),
+            }
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

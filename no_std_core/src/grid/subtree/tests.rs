@@ -1,0 +1,109 @@
+use super::*;
+use crate::canvas::WINDOW_CENTRE;
+use crate::testing::Rng;
+use crate::testing::view::signed;
+
+/// Where a packed word says that a cell lies: sixteenths from the window's
+/// corner, and depth.
+fn unpacked(word: u32) -> [f64; 3] {
+    [
+        f64::from(word >> 16 & 0xff) / 16.0,
+        f64::from(word >> 24) / 16.0,
+        f64::from(word & 0xffff),
+    ]
+}
+
+/// Random steps, made as long as still fit, from places at the ends of their
+/// pixels: every cell of two levels lies within its bound of the exact sum,
+/// and so in its window.
+fn two_levels<const RHO: u8>(seed: u64) {
+    let mut rng = Rng::with_seed(seed);
+    let rho = i32::from(RHO);
+    let mut tried = 0;
+    while tried < 300 {
+        let one = f64::from(1 << SCREEN_BITS);
+        let unit = [0; 9].map(|_| signed(&mut rng));
+        let size = 15.0 / f64::from(rho * rho - 1) * one;
+        let along = |axis: usize| Step {
+            x: (unit[axis] * size) as i32,
+            y: (unit[axis + 3] * size) as i32,
+            depth: (unit[axis + 6] * 40.0) as i32,
+        };
+        let steps = Steps([along(0), along(1), along(2)]);
+        let fraction = |rng: &mut Rng| match rng.u8(..3) {
+            0 => 0,
+            1 => 4095,
+            _ => rng.i32(0..4096),
+        };
+        let place = Place {
+            x: (100 << SCREEN_BITS) + fraction(&mut rng),
+            y: (90 << SCREEN_BITS) + fraction(&mut rng),
+            depth: rng.u16(1..),
+        };
+        let is_narrow = rng.bool();
+        if !steps.fit(&place, rho * rho, is_narrow) {
+            continue;
+        }
+        tried += 1;
+        let mut start = place.step().packed_in_window();
+        if !is_narrow {
+            start = start.wrapping_add(HALF_LEFT);
+        }
+        let mut scratch = Scratch::EMPTY;
+        scratch.blocks.fill::<RHO>(&steps.times(rho).0);
+        scratch.leaves.fill::<RHO>(&steps.0);
+        let cells = 0..RHO.pow(3);
+        for (block, leaf) in cells
+            .clone()
+            .flat_map(|block| cells.clone().map(move |leaf| (block, leaf)))
+        {
+            let word = start
+                .wrapping_add(displacement::<RHO>(&scratch.blocks, block))
+                .wrapping_add(displacement::<RHO>(&scratch.leaves, leaf));
+            let offset = [0, 1, 2].map(|axis| {
+                let at = |cell: u8| {
+                    f64::from(i32::from(cell) / rho.pow(axis) % rho) - f64::from(rho - 1) / 2.0
+                };
+                at(block) * f64::from(rho) + at(leaf)
+            });
+            let sum = |of: fn(&Step) -> i32| {
+                let parts = steps.0.iter().zip(offset);
+                parts
+                    .map(|(step, times)| f64::from(of(step)) * times)
+                    .sum::<f64>()
+            };
+            let corner = |pixel: i32| f64::from(pixel - WINDOW_CENTRE);
+            let shift = if is_narrow { 0.0 } else { 0.5 };
+            let want = [
+                (f64::from(place.x) + sum(|step| step.x)) / one - corner(100) - shift,
+                (f64::from(place.y) + sum(|step| step.y)) / one - corner(90),
+                f64::from(place.depth) + sum(|step| step.depth),
+            ];
+            let bounds = [11.0 / 32.0, 11.0 / 32.0, f64::from(DEPTH_ROUNDING)];
+            for ((got, want), bound) in unpacked(word).into_iter().zip(want).zip(bounds) {
+                assert!(
+                    (got - want).abs() <= bound,
+                    "{got}, not {want}: {place:?} {:?}",
+                    steps.0
+                );
+            }
+            let last = want[0] + if is_narrow { 0.0 } else { 1.0 };
+            assert!(want[0] >= 0.0 && last < 16.0, "{want:?}");
+        }
+    }
+}
+
+/// A subcell's displacement, by its chunk and its place in it.
+fn displacement<const RHO: u8>(subcells: &Subcells, cell: u8) -> u32 {
+    let cells = lists::chunk_rows(RHO) * usize::from(RHO);
+    let (chunk, at) = (usize::from(cell) / cells, usize::from(cell) % cells);
+    subcells.chunks[chunk].wrapping_add(subcells.cells[at ^ 8])
+}
+
+#[test]
+fn cells_of_two_levels_lie_where_their_steps_lead() {
+    two_levels::<2>(91);
+    two_levels::<3>(92);
+    two_levels::<4>(93);
+    two_levels::<5>(94);
+}
