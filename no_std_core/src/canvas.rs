@@ -23,8 +23,8 @@ const GUARD: usize = 16;
 pub(crate) const STRIP_COLUMNS: u16 = 240;
 /// How far from the strip the centre of a window may lie, pixels.
 pub(crate) const REACH: i32 = 8;
-/// Words of a window: 16 rows.
-pub(crate) const WINDOW: usize = 16 * PITCH;
+/// Words of a window: 16 rows, and one more into which squares reach.
+pub(crate) const WINDOW: usize = 17 * PITCH;
 /// The window's pixel that its centre falls on, both ways.
 pub(crate) const WINDOW_CENTRE: i32 = 8;
 
@@ -39,6 +39,24 @@ pub const fn canvas_len(rows: u16) -> usize {
 /// Rows of the tallest strip that a canvas takes.
 pub(crate) const fn canvas_rows(words: usize) -> usize {
     (words / PITCH).saturating_sub(2 * GUARD + 1)
+}
+
+/// Zeroes words.
+#[inline(never)]
+pub(crate) fn clear(words: &mut [u32]) {
+    // Zeros that the compiler does not know are stored eight at a time.
+    let zeros = black_box([0; 8]);
+    let (blocks, rest) = words.as_chunks_mut::<64>();
+    for block in blocks {
+        for eight in block.as_chunks_mut::<8>().0 {
+            *eight = zeros;
+        }
+    }
+    let (eights, rest) = rest.as_chunks_mut::<8>();
+    for eight in eights {
+        *eight = zeros;
+    }
+    rest.fill(0);
 }
 
 /// A strip of the picture on the canvas.
@@ -74,15 +92,8 @@ impl<'a> Canvas<'a> {
     /// A canvas for a strip, cleared.
     pub fn new(words: &'a mut [u32], strip: Rect) -> Self {
         let rows = strip.height() + 2 * GUARD + 1;
-        // Zeros that the compiler does not know are stored eight at a time.
-        let zeros = black_box([0; 8]);
         let used = words.len().min(rows * PITCH);
-        let (blocks, _) = words.split_at_mut(used).0.as_chunks_mut::<64>();
-        for block in blocks {
-            for eight in block.as_chunks_mut::<8>().0 {
-                *eight = zeros;
-            }
-        }
+        clear(words.split_at_mut(used).0);
         Self {
             words,
             strip,
@@ -127,15 +138,11 @@ impl<'a> Canvas<'a> {
         self.words.get_mut(start..start + columns)
     }
 
-    /// Pixels of a row of the strip, with one more on either side, and those
-    /// above and below them.
-    pub fn neighbourhood(&self, columns: &Range<u16>, row: u16) -> Option<[&[u32]; 3]> {
+    /// The neighbourhoods of pixels of a row of the strip, from the first one's
+    /// upper left neighbour to the last one's lower right.
+    pub fn neighbourhoods(&self, columns: &Range<u16>, row: u16) -> Option<&[u32]> {
         let above = usize::from(row - self.strip.top) + GUARD - 1;
-        let first = usize::from(columns.start - self.strip.left);
-        let line = |row: usize| {
-            let start = row * PITCH + first - 1;
-            self.words.get(start..start + columns.len() + 2)
-        };
-        Some([line(above)?, line(above + 1)?, line(above + 2)?])
+        let start = above * PITCH + usize::from(columns.start - self.strip.left) - 1;
+        self.words.get(start..start + 2 * PITCH + columns.len() + 2)
     }
 }

@@ -33,7 +33,8 @@ pub struct Quality {
     pub splat: SplatPx,
     /// The last one or two levels are walked by additions in screen space
     /// where that errs by at most so many pixels, and their cells are drawn as
-    /// points; at zero each cell is projected and drawn as a splat that covers
+    /// points. That is a bound that a subtree's corners reach in the worst
+    /// view; at zero each cell is projected and drawn as a splat that covers
     /// it.
     pub distortion: SplatPx,
     /// Whether pixels that points have missed are closed: see
@@ -42,14 +43,17 @@ pub struct Quality {
 }
 
 impl Quality {
+    /// The largest cell that is one sample unless somebody says otherwise,
+    /// pixels.
+    pub const SPLAT: SplatPx = SplatPx::lit("1.25");
     /// The distortion that is allowed unless somebody says otherwise, pixels.
-    pub const DISTORTION: SplatPx = SplatPx::lit("0.25");
+    pub const DISTORTION: SplatPx = SplatPx::ONE;
 }
 
 impl Default for Quality {
     fn default() -> Self {
         Self {
-            splat: SplatPx::ONE,
+            splat: Self::SPLAT,
             distortion: Self::DISTORTION,
             repair: true,
         }

@@ -23,6 +23,20 @@
 //! Where that is within the quality's distortion, and the subtree within a
 //! window of the canvas, the subtree is *packed*. For subtrees of m levels
 //! with the edge e at the bottom, r = sqrt(3) / 2 (rho^m - 1) e.
+//!
+//! *Siblings* share the steps at their parent's centre. A centre at the offset
+//! d of a subtree at the offset D from its parent errs by what the steps
+//! change on the way, with w' for the subtree's own w
+//!
+//! ```text
+//! (dX - X / w dw) / w Dw / w' + (DX - X / w Dw) / w' dw / w',
+//! ```
+//!
+//! in magnitude at most 2 r R f' / v^2, with v for the least w of the
+//! siblings' centres and R = sqrt(3) / 2 (rho - 1) rho^m e. That adds to what
+//! they would err by alone: in all f' (r^2 + 2 r R) / (v (v - r)).
+
+use core::cmp::Ordering;
 
 use crate::asset::{Grid, MAX_LEVELS};
 use crate::camera::Camera;
@@ -33,28 +47,46 @@ use crate::resolve::Gap;
 
 /// Deepest packed subtree.
 const PACKED_LEVELS: usize = 2;
-/// Cells up to this edge are drawn as points, pixels Q16: a larger one is a
-/// splat of its own size.
-const POINT_PX: i64 = 5 << 14;
-/// Points of cells with longer edges are two pixels wide, pixels Q16.
-const WIDE_PX: i64 = 15 << 12;
+/// Cells up to this edge are drawn with a [brush](crate::grid), pixels Q16: a
+/// larger one is a splat of its own size.
+const BRUSH_PX: i64 = 2 << 16;
+/// Cells up to this edge are one pixel, pixels Q16.
+const POINT_PX: i64 = 18 << 12;
+/// Cells up to this edge are at most two pixels side by side, pixels Q16.
+const WIDE_PX: i64 = 24 << 12;
 /// How much nearer a hole's neighbours are, in cells.
-const GAP_CELLS: i64 = 4;
+const GAP_CELLS: i64 = 2;
 /// Longest focal length of which sizes are told, pixels Q8; with a longer one
 /// no cell is small enough.
 const LONGEST: i64 = 1 << 30;
 /// Never: no cell is so far away.
 const NEVER: i32 = i32::MAX;
+/// Never, at the root: divided by rho^MAX_LEVELS it still exceeds [`NEVER`].
+const FARTHEST: i64 = 1 << 62;
 
 /// From where on cells of one depth are small enough, block units of w.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct LevelPlan {
     /// To stop there: an edge is at most the quality's splat.
     pub stop: i32,
-    /// To be drawn as the bottom of a packed subtree of one level, of two.
+    /// To be the bottom of a packed subtree of one level, of two.
     pub packed: [i32; PACKED_LEVELS],
-    /// To be drawn as points that are one pixel wide.
-    pub narrow: i32,
+    /// The same of siblings; their parent's w.
+    pub siblings: [i32; PACKED_LEVELS],
+    /// To be drawn as one pixel.
+    pub point: i32,
+    /// To be drawn as at most two pixels side by side.
+    pub wide: i32,
+}
+
+impl LevelPlan {
+    const NEVER: Self = Self {
+        stop: NEVER,
+        packed: [NEVER; PACKED_LEVELS],
+        siblings: [NEVER; PACKED_LEVELS],
+        point: NEVER,
+        wide: NEVER,
+    };
 }
 
 /// What a frame does.
@@ -76,25 +108,14 @@ impl Plan {
         quality: &Quality,
         projection: &Projection,
     ) -> Self {
-        let none = LevelPlan {
-            stop: NEVER,
-            packed: [NEVER; PACKED_LEVELS],
-            narrow: NEVER,
-        };
-        let mut levels = [none; MAX_LEVELS];
         let lens = Lens::new(camera, projection);
         let rho = i64::from(grid.rho()).max(1);
-        // The root's edge is two half sides.
-        let mut edge = 2 * projection.half_side();
         let splat = i64::from(quality.splat.to_bits());
-        let distortion = i64::from(quality.distortion.to_bits());
+        let mut distances = lens.distances(rho, projection, quality);
+        let mut levels = [LevelPlan::NEVER; MAX_LEVELS];
         for level in levels.iter_mut().take(usize::from(grid.depth()) + 1) {
-            *level = LevelPlan {
-                stop: lens.farther_than(edge, splat),
-                packed: [rho, rho * rho].map(|cells| lens.packed(edge, cells, distortion)),
-                narrow: lens.farther_than(edge, WIDE_PX),
-            };
-            edge /= rho;
+            *level = distances.plan(rho, lens.near);
+            distances = distances.below(rho);
         }
         let repair = quality.repair.then(|| lens.gap(projection, splat));
         let nearest = projection.nearest();
@@ -105,6 +126,16 @@ impl Plan {
             levels,
             depth,
             repair,
+        }
+    }
+
+    /// From which w on a cell above a depth stops there.
+    #[inline(always)]
+    pub fn stop(&self, depth: u8) -> i32 {
+        match depth.cmp(&self.depth) {
+            Ordering::Less => self.level(depth).stop,
+            Ordering::Equal => i32::MIN,
+            Ordering::Greater => NEVER,
         }
     }
 
@@ -124,6 +155,62 @@ struct Lens {
     near: i64,
 }
 
+/// The distances of cells of one depth, block units of w; all are
+/// proportional to the edge.
+#[derive(Clone, Copy)]
+struct Distances {
+    edge: i64,
+    stop: i64,
+    brush: i64,
+    point: i64,
+    wide: i64,
+    /// Where packed subtrees of one level, of two, and siblings of them, keep
+    /// the distortion: the v of the module.
+    packed: [i64; PACKED_LEVELS],
+    siblings: [i64; PACKED_LEVELS],
+}
+
+impl Distances {
+    /// Those a level below. Each is rounded up.
+    fn below(self, rho: i64) -> Self {
+        // Below 2^63 - rho.
+        let next = |distance: i64| (distance + rho - 1) / rho;
+        Self {
+            edge: next(self.edge),
+            stop: next(self.stop),
+            brush: next(self.brush),
+            point: next(self.point),
+            wide: next(self.wide),
+            packed: self.packed.map(next),
+            siblings: self.siblings.map(next),
+        }
+    }
+
+    fn plan(&self, rho: i64, near: i64) -> LevelPlan {
+        let spans = [rho, rho * rho];
+        let from = |v: i64, cells: i64, apart: i64| {
+            let [r, apart] = [cells - 1, apart].map(|cells| diagonal(self.edge, cells));
+            let v = v.max(self.brush).max(near.saturating_add(r));
+            narrow(v.saturating_add(apart))
+        };
+        let packed = |at: usize| from(self.packed[at], spans[at], 0);
+        let siblings = |at: usize| from(self.siblings[at], spans[at], (rho - 1) * spans[at]);
+        LevelPlan {
+            stop: narrow(self.stop),
+            packed: [packed(0), packed(1)],
+            siblings: [siblings(0), siblings(1)],
+            point: narrow(self.point),
+            wide: narrow(self.wide),
+        }
+    }
+}
+
+/// Half the diagonal of so many cells with an edge, rounded up.
+fn diagonal(edge: i64, cells: i64) -> i64 {
+    // sqrt(3) / 2 < 887 / 1024; edges are below 2^32, cells below 2^10.
+    (((edge + 1) * cells * 887) >> 10) + 1
+}
+
 impl Lens {
     fn new(camera: &Camera, projection: &Projection) -> Self {
         let focal = (camera.focal_px.to_bits() >> 24).clamp(0, LONGEST) + 1;
@@ -136,19 +223,38 @@ impl Lens {
         }
     }
 
-    /// The distance from which an edge is at most `pixels`, Q16, long.
-    fn farther_than(&self, edge: i64, pixels: i64) -> i32 {
-        if pixels <= 0 || self.focal > LONGEST {
-            return NEVER;
+    /// The root's.
+    fn distances(&self, rho: i64, projection: &Projection, quality: &Quality) -> Distances {
+        // Two half sides.
+        let edge = 2 * projection.half_side();
+        let splat = i64::from(quality.splat.to_bits());
+        let distortion = i64::from(quality.distortion.to_bits());
+        let spans = [rho, rho * rho];
+        let undistorted = |cells, apart| self.undistorted(edge, cells, apart, distortion);
+        Distances {
+            edge,
+            stop: self.farther_than(edge, splat),
+            brush: self.farther_than(edge, BRUSH_PX),
+            point: self.farther_than(edge, POINT_PX),
+            wide: self.farther_than(edge, WIDE_PX),
+            packed: spans.map(|cells| undistorted(cells, 0)),
+            siblings: spans.map(|cells| undistorted(cells, (rho - 1) * cells)),
         }
-        // Q8 pixels x 31 bits, to Q16.
-        let wide = (i128::from(edge + 1) * i128::from(self.focal)) << 8;
-        narrow((wide / i128::from(pixels)) as i64)
     }
 
-    /// [`GAP_CELLS`] cells of the splat's size. At the distance w such a cell
-    /// is splat w / f long; depth + offset being scale / w, its depth is
-    /// (depth + offset) splat / f.
+    /// The distance from which an edge is at most `pixels`, Q16, long.
+    fn farther_than(&self, edge: i64, pixels: i64) -> i64 {
+        if pixels <= 0 || self.focal > LONGEST {
+            return FARTHEST;
+        }
+        // 32 + 30 bits, Q8 pixels, over Q16 ones.
+        let wide = (edge + 1).saturating_mul(self.focal);
+        (wide / pixels + 1).saturating_mul(1 << 8).min(FARTHEST)
+    }
+
+    /// The gap that makes a hole: [`GAP_CELLS`] cells of the splat's size. At
+    /// the distance w such a cell is splat w / f long; depth + offset being
+    /// scale / w, its depth is (depth + offset) splat / f.
     fn gap(&self, projection: &Projection, splat: i64) -> Gap {
         let cells = GAP_CELLS * splat.max(1 << 16);
         let slope = ((self.focal << 8) / cells.max(1)).max(1);
@@ -160,25 +266,21 @@ impl Lens {
         }
     }
 
-    /// The distance from which a subtree of so many cells an axis is packed.
-    fn packed(&self, edge: i64, cells: i64, distortion: i64) -> i32 {
+    /// The least v at which subtrees of `cells` an axis, siblings whose centres
+    /// span `apart` cells, keep a distortion, pixels Q16: see the module.
+    fn undistorted(&self, edge: i64, cells: i64, apart: i64, distortion: i64) -> i64 {
         if distortion <= 0 {
-            return NEVER;
+            return FARTHEST;
         }
-        // sqrt(3) / 2 < 887 / 1024.
-        let radius = (((edge + 1) * (cells - 1) * 887) >> 10) + 1;
-        // r^2 f' / distortion <= w (w - r).
-        let square = i128::from(radius) * i128::from(radius);
-        let square = ((square * i128::from(self.oblique)) << 8) / i128::from(distortion);
-        let square = square + i128::from(radius) * i128::from(radius) / 4;
-        let root = u64::try_from(square)
-            .map_or(u64::MAX, |square| square)
-            .isqrt() as i64;
-        narrow(
-            (radius / 2 + root + 1)
-                .max(i64::from(self.farther_than(edge, POINT_PX)))
-                .max(self.near.saturating_add(radius)),
-        )
+        // v is at most r + sqrt((r^2 + 2 r R) f' / distortion). With edges of
+        // one, the root's square is 3 / 4 of a whole number times Q8 over Q16:
+        // to Q20.
+        let r = cells - 1;
+        let square = 3 * r * (r + 2 * apart) * self.oblique;
+        let ratio = square.saturating_mul(1 << 26) / distortion;
+        let root = ratio.unsigned_abs().isqrt() as i64 + 1;
+        let root = root.saturating_mul(edge + 1) >> 10;
+        root.saturating_add(diagonal(edge, r) + 1).min(FARTHEST)
     }
 }
 

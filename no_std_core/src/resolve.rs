@@ -1,15 +1,15 @@
 //! From the canvas to colours, with holes closed.
 //!
-//! Samples are drawn as points where their cells are at most a pixel large, so
+//! Samples are drawn as points where their cells are about a pixel large, so
 //! that a pixel here and there is missed: it shows nothing, or what lies
-//! behind. Such a *hole* is a pixel between two others, left and right or
-//! above and below, that are as near as each other, up to a few cells, and
-//! nearer than it by more. It takes their mean colour. A gap of one pixel that
-//! is really there is closed, too.
+//! behind. Such a *hole* is a pixel between two others, beside, above and below
+//! or across, that are both nearer than it by a few cells. Of several such
+//! pairs the one counts whose deeper pixel is nearest; the hole takes its mean
+//! colour. A gap of one pixel that is really there is closed, too.
 
-use crate::canvas::Canvas;
+use crate::canvas::{Canvas, PITCH};
 use crate::shade::Shader;
-use crate::target::Picture;
+use crate::target::{Picture, blank};
 
 /// How much nearer a neighbour is, depth << 16, to make a hole of a pixel
 /// that shows `word`.
@@ -20,6 +20,13 @@ pub(crate) struct Gap {
     /// More for each depth: depth >> shift, at least two.
     pub shift: u32,
 }
+
+/// A pixel and its eight neighbours on the canvas: three rows of three, from
+/// the one above to the left on.
+type Neighbourhood = [u32; 2 * PITCH + 3];
+
+/// Where the pixel itself is.
+const OWN: usize = PITCH + 1;
 
 /// Writes a strip's colours, and depths where they are asked for.
 pub(crate) fn resolve(
@@ -37,43 +44,44 @@ pub(crate) fn resolve(
             strip.left..strip.left
         };
         for beside in [strip.left..drawn.start, drawn.end..strip.right] {
-            if let Some(colours) = picture.colours(beside.clone(), row) {
-                colours.fill(0);
-            }
-            if let Some(depths) = picture.depths(beside, row) {
-                depths.fill(0);
-            }
+            picture.blank(beside, row);
         }
-        let Some(lines) = canvas.neighbourhood(&drawn, row) else {
+        let Some(words) = canvas.neighbourhoods(&drawn, row) else {
             return;
         };
         if let Some(colours) = picture.colours(drawn.clone(), row) {
-            match repair {
-                Some(gap) => resolve_row(lines, gap, shader, colours),
-                None => plain_row(lines[1], shader, colours),
+            match (repair, shader.table_of_one()) {
+                (None, _) => plain_row(words, shader, colours),
+                (Some(gap), None) => row_of(words, gap, colours, |word| shader.colour_of(word)),
+                (Some(gap), Some(table)) => row_of(words, gap, colours, |word| match word {
+                    0 => 0,
+                    _ => table[word as usize % table.len()],
+                }),
             }
         }
         if let Some(depths) = picture.depths(drawn, row) {
-            depth_row(lines, repair, depths);
+            depth_row(words, repair, depths);
         }
     }
 }
 
-fn plain_row(line: &[u32], shader: &Shader<'_>, colours: &mut [u16]) {
-    for (colour, &own) in colours.iter_mut().zip(line.iter().skip(1)) {
+fn plain_row(words: &[u32], shader: &Shader<'_>, colours: &mut [u16]) {
+    for (colour, &own) in colours.iter_mut().zip(words.iter().skip(OWN)) {
         *colour = shader.colour_of(own);
     }
 }
 
 /// Leaves out what is empty at the row's two ends, four pixels at a time.
-fn resolve_row(lines: [&[u32]; 3], gap: Gap, shader: &Shader<'_>, colours: &mut [u16]) {
-    let [above, line, _] = lines;
+#[inline(never)]
+fn row_of(words: &[u32], gap: Gap, colours: &mut [u16], colour_of: impl Fn(u32) -> u16) {
     // A hole has something on two sides, and so beside it or above it.
     let is_empty =
         |([a, b, c, d], [e, f, g, h]): (&[u32; 4], &[u32; 4])| a | b | c | d | e | f | g | h == 0;
-    let fours = above.as_chunks().0.iter().zip(line.as_chunks().0);
+    let line = |start: usize| words.get(start..start + colours.len() + 2).unwrap_or(&[]);
+    let (above, own) = (line(0), line(PITCH));
+    let fours = above.as_chunks().0.iter().zip(own.as_chunks().0);
     let ahead = fours.take_while(|&four| is_empty(four)).count();
-    let fours = above.as_rchunks().1.iter().zip(line.as_rchunks().1);
+    let fours = above.as_rchunks().1.iter().zip(own.as_rchunks().1);
     let behind = fours.rev().take_while(|&four| is_empty(four)).count();
     // Lines begin one pixel before the colours and end one behind them.
     let first = (4 * ahead).saturating_sub(2).min(colours.len());
@@ -81,47 +89,35 @@ fn resolve_row(lines: [&[u32]; 3], gap: Gap, shader: &Shader<'_>, colours: &mut 
     let last = (4 * behind).saturating_sub(2).min(rest);
     let (before, inner) = colours.split_at_mut(first);
     let (inner, after) = inner.split_at_mut(rest - last);
-    before.fill(0);
-    after.fill(0);
-    let lines = lines.map(|line| line.get(first..).unwrap_or(&[]));
-    resolve_pixels(lines, gap, shader, inner);
-}
-
-/// Most pixels are far from any hole: their left and upper neighbours are not
-/// nearer than by the least gap, and nothing else is looked at.
-#[inline(always)]
-fn resolve_pixels(lines: [&[u32]; 3], gap: Gap, shader: &Shader<'_>, colours: &mut [u16]) {
-    let [above, line, below] = lines;
-    let [mut left, mut own, ref rest @ ..] = *line else {
-        return;
-    };
-    let sides = above.iter().zip(below).skip(1);
-    for ((colour, &right), (above, below)) in colours.iter_mut().zip(rest).zip(sides) {
-        let least = gap.least(own);
-        *colour = if left <= least && *above <= least {
-            shader.colour_of(own)
-        } else {
-            match hole([left, right, *above, *below], gap.limit(own), gap) {
-                None => shader.colour_of(own),
-                Some([first, second]) => mean(shader.colour_of(first), shader.colour_of(second)),
-            }
-        };
-        (left, own) = (own, right);
+    blank(before);
+    blank(after);
+    let around = words.get(first..).unwrap_or(&[]).array_windows();
+    for (colour, around) in inner.iter_mut().zip(around) {
+        *colour = pixel(around, gap, &colour_of);
     }
 }
 
-fn depth_row(lines: [&[u32]; 3], repair: Option<Gap>, depths: &mut [u16]) {
-    let [above, line, below] = lines;
-    let triples = line.windows(3);
-    let sides = above.iter().zip(below).skip(1);
-    for ((depth, triple), (&above, &below)) in depths.iter_mut().zip(triples).zip(sides) {
-        let &[left, own, right] = triple else {
-            return;
-        };
-        let neighbours = [left, right, above, below];
-        let shown = match repair.and_then(|gap| hole(neighbours, gap.limit(own), gap)) {
+/// Most pixels are far from any hole: of each pair, the neighbour to the left
+/// or above is not nearer than by the least gap, and nothing else is looked at.
+#[inline(always)]
+fn pixel(around: &Neighbourhood, gap: Gap, colour_of: &impl Fn(u32) -> u16) -> u16 {
+    let own = around[OWN];
+    let least = gap.least(own);
+    let ahead = [around[OWN - 1], around[0], around[1], around[2]];
+    if ahead.into_iter().all(|word| word <= least) {
+        return colour_of(own);
+    }
+    match hole(around, gap) {
+        None => colour_of(own),
+        Some([first, second]) => mean(colour_of(first), colour_of(second)),
+    }
+}
+
+fn depth_row(words: &[u32], repair: Option<Gap>, depths: &mut [u16]) {
+    for (depth, around) in depths.iter_mut().zip(words.array_windows()) {
+        let shown = match repair.and_then(|gap| hole(around, gap)) {
             Some([first, second]) => first.min(second),
-            None => own,
+            None => around[OWN],
         };
         *depth = (shown >> 16) as u16;
     }
@@ -150,21 +146,21 @@ impl Gap {
     }
 }
 
-/// The neighbours that close a hole, if it is one.
+/// The pair of opposite neighbours that closes a hole, if it is one: both are
+/// nearer by the gap. Of equally deep pairs the first counts.
 #[inline(never)]
-fn hole(neighbours: [u32; 4], limit: u32, gap: Gap) -> Option<[u32; 2]> {
-    let [left, right, above, below] = neighbours;
-    let closes = |a: u32, b: u32| {
-        let (deeper, nearer) = (a.min(b), a.max(b));
-        deeper > limit && nearer <= gap.limit(deeper)
-    };
-    if closes(left, right) {
-        Some([left, right])
-    } else if closes(above, below) {
-        Some([above, below])
-    } else {
-        None
+fn hole(around: &Neighbourhood, gap: Gap) -> Option<[u32; 2]> {
+    let mut closing = None;
+    let mut nearest = gap.limit(around[OWN]);
+    for offset in [1, PITCH, PITCH + 1, PITCH - 1] {
+        let pair = [around[OWN - offset], around[OWN + offset]];
+        let deeper = pair[0].min(pair[1]);
+        if deeper > nearest {
+            nearest = deeper;
+            closing = Some(pair);
+        }
     }
+    closing
 }
 
 /// The mean of two RGB565 colours, each channel rounded down.

@@ -153,6 +153,11 @@ impl<'a> Shader<'a> {
         Self { model, table }
     }
 
+    /// The table, if it is that of one material.
+    pub fn table_of_one(&self) -> Option<&[u16; CODES]> {
+        self.table.try_into().ok()
+    }
+
     /// The colour of a pixel of the canvas: black where nothing is drawn.
     #[inline(always)]
     pub fn colour_of(&self, word: u32) -> u16 {

@@ -4,7 +4,7 @@
 //! checked once, here.
 
 pub use crate::canvas::canvas_len;
-use crate::canvas::{STRIP_COLUMNS, canvas_rows};
+use crate::canvas::{STRIP_COLUMNS, canvas_rows, clear};
 use core::ops::Range;
 
 use crc::{CRC_32_ISO_HDLC, Crc, Table};
@@ -160,6 +160,18 @@ impl<'a> Target<'a> {
     }
 }
 
+/// Zeroes pixels.
+#[inline(always)]
+pub(crate) fn blank(pixels: &mut [u16]) {
+    if pixels.is_empty() {
+        return;
+    }
+    let (first, words, last) = bytemuck::pod_align_to_mut::<u16, u32>(pixels);
+    first.fill(0);
+    clear(words);
+    last.fill(0);
+}
+
 impl Picture<'_> {
     /// Colours of a row of the picture.
     pub(crate) fn colours(&mut self, columns: Range<u16>, row: u16) -> Option<&mut [u16]> {
@@ -171,6 +183,16 @@ impl Picture<'_> {
     pub(crate) fn depths(&mut self, columns: Range<u16>, row: u16) -> Option<&mut [u16]> {
         let range = self.range(columns, row);
         self.depth.as_mut()?.get_mut(range)
+    }
+
+    /// Zeroes colours, and depths if they are asked for, of a row.
+    pub(crate) fn blank(&mut self, columns: Range<u16>, row: u16) {
+        if let Some(colours) = self.colours(columns.clone(), row) {
+            blank(colours);
+        }
+        if let Some(depths) = self.depths(columns, row) {
+            blank(depths);
+        }
     }
 
     fn range(&self, columns: Range<u16>, row: u16) -> Range<usize> {

@@ -6,6 +6,7 @@ use std::str::FromStr;
 use clap::{Args, ValueEnum};
 use glam::DVec3;
 use rhogrid_core::asset::{Shell, max_depth};
+use rhogrid_core::draw::Quality;
 
 use super::Failure;
 use crate::bake::GridOptions;
@@ -269,7 +270,7 @@ pub struct QualityArgs {
     #[arg(
         long,
         value_name = "PX",
-        default_value_t = 1.0,
+        default_value_t = Quality::SPLAT.to_num(),
         allow_negative_numbers = true
     )]
     pub splat: f64,

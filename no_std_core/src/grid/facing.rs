@@ -107,6 +107,7 @@ pub(crate) fn horizon(view: [i32; 3], radius: i32) -> i32 {
 
 /// Facing tests of all cells below one: by its view vector, scaled to unit
 /// length, against thresholds of the level.
+#[derive(Clone, Copy)]
 pub(super) struct Normals {
     /// From the eye, unit length at most, Q14.
     view: [i32; 3],
@@ -118,6 +119,9 @@ pub(super) struct Normals {
 const TEST_ONE: i32 = COARSE_ONE << 14;
 /// Sine of what coarse normals and the blocks' sizes may be off.
 const DOUBT: i32 = TEST_ONE / 16;
+
+/// No test exceeds it: sines and doubt add up, and nothing turns away.
+const NEVER: i32 = 1 << 29;
 
 /// The sines of [`APERTURE_SINE`] for [`Normals`].
 static TEST_SINE: [i32; 15] = {
@@ -131,9 +135,19 @@ static TEST_SINE: [i32; 15] = {
 };
 
 /// A factor: mantissa 2^(shift - 32).
+#[derive(Clone, Copy)]
 struct Scale {
     mantissa: u32,
     shift: i32,
+}
+
+impl Scale {
+    /// A component grows to 17 bits at most, a radius to 31: eye space's
+    /// shortest vectors are a unit long.
+    #[inline(always)]
+    fn times(self, c: i32) -> i32 {
+        ((i64::from(c << self.shift) * i64::from(self.mantissa)) >> 32) as i32
+    }
 }
 
 /// Inverse roots, rounded down: entry i holds 2^33 / sqrt(i + 1).
@@ -176,13 +190,9 @@ impl Normals {
         // Below 2^15 each.
         let square = x * x + y * y + z * z;
         let scale = inverse_length(square);
-        // A component grows to 16 bits at most, a radius to 31: eye space's
-        // shortest vectors are a unit long.
-        let unit =
-            |c: i32| ((i64::from(c << scale.shift) * i64::from(scale.mantissa)) >> 32) as i32;
-        let radius = unit(radius.min(1 << 15)).min(1 << 15) * COARSE_ONE;
+        let radius = scale.times(radius.min(1 << 15)).min(1 << 15) * COARSE_ONE;
         Self {
-            view: view.map(unit),
+            view: view.map(|c| scale.times(c)),
             doubt: DOUBT + radius,
         }
     }
@@ -215,6 +225,54 @@ impl Normals {
             attribute ^ OPPOSITE
         } else {
             attribute
+        }
+    }
+}
+
+/// Facing tests for the children of a cell, with one root for all of them.
+pub(super) struct Around {
+    scale: Scale,
+    /// See [`Normals::doubt`].
+    doubt: i32,
+}
+
+impl Around {
+    /// For children with a radius, of a cell with a view vector and a radius.
+    ///
+    /// With u for the cell's radius over its distance, the children's distance
+    /// is between 1 - u and 1 + u of the cell's. Their view vectors are scaled
+    /// by (1 - u) <= 1 / (1 + u), so that none becomes longer than one, their
+    /// radius by 1 + 2 u >= 1 / (1 - u), as long as u is at most one half.
+    pub fn new(view: [i32; 3], around: i32, radius: i32) -> Self {
+        let [x, y, z] = view.map(|c| c.unsigned_abs());
+        let scale = inverse_length(x * x + y * y + z * z);
+        // Q14, rounded up.
+        let share = |radius: i32| scale.times(radius.min(1 << 15)) + 1;
+        let u = share(around);
+        if u > 1 << 13 {
+            return Self {
+                scale,
+                doubt: NEVER,
+            };
+        }
+        let radius = share(radius);
+        let radius = radius + ((radius * u) >> 13) + 1;
+        let mantissa = (u64::from(scale.mantissa) * ((1 << 14) - u) as u64) >> 14;
+        Self {
+            scale: Scale {
+                mantissa: mantissa as u32,
+                ..scale
+            },
+            doubt: DOUBT + radius * COARSE_ONE,
+        }
+    }
+
+    /// For a child with a view vector.
+    #[inline(always)]
+    pub fn normals(&self, view: [i32; 3]) -> Normals {
+        Normals {
+            view: view.map(|c| self.scale.times(c)),
+            doubt: self.doubt,
         }
     }
 }

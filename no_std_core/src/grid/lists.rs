@@ -58,51 +58,65 @@ pub(super) static COUNTS: [u8; 512] = {
     counts
 };
 
-/// A chunk of a record.
-#[inline(always)]
-pub(super) fn chunk<const RHO: u8>(record: &[u16], index: usize) -> usize {
-    let word = |at: usize| usize::from(record.get(at).copied().unwrap_or(0));
-    match RHO {
-        2 => word(0) >> (4 * index) & 0xf,
-        3 => (word(0) | word(1) << 16) >> (9 * index) & 0x1ff,
-        4 => word(index / 2) >> (8 * (index % 2)) & 0xff,
-        _ => {
-            let bit = 5 * index;
-            (word(bit / 16) | word(bit / 16 + 1) << 16) >> (bit % 16) & 0x1f
+/// The cells of a record, as words of 32.
+#[derive(Clone, Copy)]
+pub(super) struct Mask<const RHO: u8>([u32; 4]);
+
+impl<const RHO: u8> Mask<RHO> {
+    /// Reads a record; of one that is too short, no cells.
+    #[inline(always)]
+    pub fn of(record: &[u16]) -> Self {
+        let word = |low: u16, high: u16| u32::from(low) | u32::from(high) << 16;
+        Self(match (RHO, record) {
+            (2, &[only, ..]) => [word(only, 0), 0, 0, 0],
+            (3, &[a, b, ..]) => [word(a, b), 0, 0, 0],
+            (4, &[a, b, c, d, ..]) => [word(a, b), word(c, d), 0, 0],
+            (5, &[a, b, c, d, e, f, g, h, ..]) => [word(a, b), word(c, d), word(e, f), word(g, h)],
+            _ => [0; 4],
+        })
+    }
+
+    /// The cells that are not in another mask.
+    #[inline(always)]
+    pub fn without(self, other: Self) -> Self {
+        let [a, b, c, d] = self.0;
+        let [e, f, g, h] = other.0;
+        Self([a & !e, b & !f, c & !g, d & !h])
+    }
+
+    /// A chunk's bits, below 512.
+    #[inline(always)]
+    pub fn chunk(self, index: usize) -> usize {
+        let [a, b, c, d] = self.0;
+        let bits = match RHO {
+            2 => a >> (4 * index) & 0xf,
+            3 => a >> (9 * index) & 0x1ff,
+            4 => self.0[index / 4 % 4] >> (8 * (index % 4)) & 0xff,
+            _ => {
+                let wide =
+                    u128::from(a) | u128::from(b) << 32 | u128::from(c) << 64 | u128::from(d) << 96;
+                (wide >> (5 * index)) as u32 & 0x1f
+            }
+        };
+        bits as usize % 512
+    }
+
+    /// Number of cells.
+    #[inline(always)]
+    pub fn count(self) -> u32 {
+        if RHO > 3 {
+            return self.0.iter().map(|word| word.count_ones()).sum();
         }
+        (0..chunks(RHO))
+            .map(|index| u32::from(COUNTS[self.chunk(index)]))
+            .sum()
     }
 }
 
-/// Number of cells in a record.
-#[inline(always)]
-pub(super) fn count<const RHO: u8>(record: &[u16]) -> usize {
-    (0..chunks(RHO))
-        .map(|index| usize::from(COUNTS[chunk::<RHO>(record, index) % 512]))
-        .sum()
-}
-
-/// A chunk with its place in the record.
-pub(super) struct Chunk {
-    pub index: usize,
-    /// Below 512.
-    pub bits: usize,
-}
-
-/// The chunks of a cell's children in file order: first the drawn ones, then
+/// The masks of a cell's children in file order: first the drawn ones, then
 /// the others.
 #[inline(always)]
-pub(super) fn in_file_order<'a, const RHO: u8>(
-    node: &'a [u16],
-    drawn: &'a [u16],
-) -> impl Iterator<Item = Chunk> + use<'a, RHO> {
-    let bits = |record: &'a [u16], index| chunk::<RHO>(record, index) % 512;
-    let of_drawn = (0..chunks(RHO)).map(move |index| Chunk {
-        index,
-        bits: bits(drawn, index),
-    });
-    let others = (0..chunks(RHO)).map(move |index| Chunk {
-        index,
-        bits: bits(node, index) & !bits(drawn, index),
-    });
-    of_drawn.chain(others)
+pub(super) fn in_file_order<const RHO: u8>(node: &[u16], drawn: &[u16]) -> [Mask<RHO>; 2] {
+    let drawn = Mask::of(drawn);
+    [drawn, Mask::of(node).without(drawn)]
 }

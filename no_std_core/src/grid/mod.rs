@@ -5,12 +5,14 @@
 //! exact basis (the paper divides the table above); nodes whose surfaces all
 //! face away are skipped with their subtrees.
 
+mod affine;
 mod clip;
 mod facing;
 mod footprint;
 mod leaves;
 mod lists;
 mod packed;
+mod siblings;
 mod subtree;
 mod tables;
 mod traverse;

@@ -12,8 +12,11 @@
 //! its field. Shifted right by 20 and masked, a place is the pixel's index in
 //! the window; shifted left by 16 it is what the canvas compares.
 
-use super::lists::{CHUNK_CELLS, COUNTS, LISTS, MAX_CHUNKS, chunk, chunk_rows, chunks};
-use crate::canvas::{WINDOW_CENTRE, Window};
+use super::facing::Normals;
+use super::lists::{CHUNK_CELLS, COUNTS, LISTS, MAX_CHUNKS, Mask, chunk_rows, chunks};
+use crate::asset::Level;
+use crate::asset::node::{Flags, halves};
+use crate::canvas::{PITCH, WINDOW_CENTRE, Window};
 
 /// A position on the screen, or a step of one: Q20.12 pixels and depth.
 #[derive(Clone, Copy, Debug)]
@@ -105,54 +108,130 @@ impl Subcells {
     }
 }
 
-/// Half a pixel to the left: a place whose point is two pixels wide.
-pub(super) const HALF_LEFT: u32 = (8u32 << 16).wrapping_neg();
+/// What a sample is drawn with: the pixel that holds its centre, two pixels
+/// side by side, or a square of two.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Brush {
+    Point,
+    Wide,
+    Square,
+}
 
-/// Draws the cells of a list as points, one pixel wide or two.
-#[inline(always)]
-fn points<const WIDE: bool>(
-    attributes: &[u16],
-    mut list: u32,
-    place: u32,
-    cells: &[u32; CHUNK_CELLS],
-    window: &mut Window,
-    seen: impl Fn(u16) -> u16,
-) {
-    for &attribute in attributes {
-        let place = place.wrapping_add(cells[(list & 15) as usize]);
-        list >>= 4;
-        let index = (place >> 20 & 0xf0f) as usize;
-        let depth = place << 16;
-        // Of equal depths the first stays.
-        if depth > window[index] {
-            window[index] = depth | u32::from(seen(attribute));
-        }
-        if WIDE && depth > window[index + 1] {
-            window[index + 1] = depth | u32::from(seen(attribute));
+impl Brush {
+    /// From a sample's centre to the centre of its first pixel, as a word.
+    #[inline(always)]
+    pub fn offset(self) -> u32 {
+        const HALF_LEFT: u32 = (8u32 << 16).wrapping_neg();
+        const HALF_UP: u32 = (8u32 << 24).wrapping_neg();
+        match self {
+            Self::Point => 0,
+            Self::Wide => HALF_LEFT,
+            Self::Square => HALF_LEFT.wrapping_add(HALF_UP),
         }
     }
 }
 
-/// Draws the children of a cell as points; gives how many there are. `seen`
-/// tells how a sample shows.
+/// Draws a sample, COLUMNS by ROWS pixels of it; of equal depths the first
+/// stays.
+#[inline(always)]
+fn dab<const COLUMNS: usize, const ROWS: usize>(place: u32, attribute: u16, window: &mut Window) {
+    let first = (place >> 20 & 0xf0f) as usize;
+    let depth = place << 16;
+    for row in 0..ROWS {
+        for column in 0..COLUMNS {
+            let pixel = &mut window[first + row * PITCH + column];
+            if depth > *pixel {
+                *pixel = depth | u32::from(attribute);
+            }
+        }
+    }
+}
+
+/// A cell whose children are drawn.
+#[derive(Clone, Copy)]
+pub(super) struct Block {
+    /// Its centre as a word, with the brush's offset.
+    pub place: u32,
+    /// Which record of the level below is its own.
+    pub record: u32,
+    /// Index of its first child there.
+    pub first: u32,
+}
+
+impl Block {
+    /// To be overwritten.
+    pub const NONE: Self = Self {
+        place: 0,
+        record: 0,
+        first: 0,
+    };
+}
+
+/// Draws the children of blocks; gives how many they are. `level` is the
+/// children's.
 #[inline(never)]
-pub(super) fn block<const RHO: u8, const WIDE: bool>(
-    place: u32,
-    record: &[u16],
+pub(super) fn draw_blocks<const RHO: u8, const COLUMNS: usize, const ROWS: usize>(
+    blocks: &[Block],
+    level: &Level<'_>,
+    subcells: &Subcells,
+    normals: &Normals,
+    window: &mut Window,
+) -> u32 {
+    let mut drawn = 0;
+    for block in blocks {
+        let first = block.record as usize * halves(RHO);
+        let record = level.drawn.get(first..first + halves(RHO)).unwrap_or(&[]);
+        let attributes = level.attributes.get(block.first as usize..).unwrap_or(&[]);
+        let mask = Mask::<RHO>::of(record);
+        let last = record.last().copied().unwrap_or(0);
+        drawn += if Flags::from_last(RHO, last).is_sheet() {
+            draw_sheet::<RHO, COLUMNS, ROWS>(block, mask, attributes, subcells, normals, window)
+        } else {
+            let as_it_is = |attribute| attribute;
+            draw::<RHO, COLUMNS, ROWS>(block, mask, attributes, subcells, as_it_is, window)
+        };
+    }
+    drawn
+}
+
+/// Draws the children of a block. `seen` tells how a sample shows.
+#[inline(always)]
+fn draw<const RHO: u8, const COLUMNS: usize, const ROWS: usize>(
+    block: &Block,
+    drawn: Mask<RHO>,
     attributes: &[u16],
     subcells: &Subcells,
-    window: &mut Window,
     seen: impl Fn(u16) -> u16,
-) -> usize {
+    window: &mut Window,
+) -> u32 {
     let mut rest = attributes;
-    for (index, &offset) in (0..chunks(RHO)).zip(&subcells.chunks) {
-        let bits = chunk::<RHO>(record, index) % 512;
+    for index in 0..chunks(RHO) {
+        let bits = drawn.chunk(index);
         let Some((own, others)) = rest.split_at_checked(usize::from(COUNTS[bits])) else {
             break;
         };
         rest = others;
-        let place = place.wrapping_add(offset);
-        points::<WIDE>(own, LISTS[bits], place, &subcells.cells, window, &seen);
+        let pivot = block.place.wrapping_add(subcells.chunks[index]);
+        let mut list = LISTS[bits];
+        for &attribute in own {
+            let place = pivot.wrapping_add(subcells.cells[(list & 15) as usize]);
+            list >>= 4;
+            dab::<COLUMNS, ROWS>(place, seen(attribute), window);
+        }
     }
-    attributes.len() - rest.len()
+    (attributes.len() - rest.len()) as u32
+}
+
+/// Draws a sheet, whose samples show the side that is seen.
+#[inline(never)]
+fn draw_sheet<const RHO: u8, const COLUMNS: usize, const ROWS: usize>(
+    block: &Block,
+    drawn: Mask<RHO>,
+    attributes: &[u16],
+    subcells: &Subcells,
+    normals: &Normals,
+    window: &mut Window,
+) -> u32 {
+    let turned = |attribute| normals.turned(attribute);
+    draw::<RHO, COLUMNS, ROWS>(block, drawn, attributes, subcells, turned, window)
 }

@@ -10,8 +10,8 @@
 use super::clip::{Clip, Side};
 use super::facing::{EyeSpace, Normals};
 use super::footprint::{Place, is_beside, near_limit};
-use super::lists::{self, COUNTS, LISTS};
-use super::subtree::Scratch;
+use super::lists::{self, COUNTS, LISTS, Mask};
+use super::packed::Block;
 use super::tables::{Point, Tables};
 use crate::asset::node::{Flags, halves};
 use crate::asset::{Grid, Level};
@@ -34,7 +34,8 @@ pub(super) struct Frame<'a, const CELLS: usize, const LEVELS: usize> {
 pub(super) struct Output<'t, 'c> {
     pub canvas: &'t mut Canvas<'c>,
     pub stats: &'t mut Stats,
-    pub scratch: &'t mut Scratch,
+    /// For a subtree's blocks, as many as a cell has subcells.
+    pub queue: &'t mut [Block],
 }
 
 /// A cell on the way down.
@@ -116,11 +117,10 @@ fn run<const RHO: u8, const CELLS: usize, const LEVELS: usize>(
         tables: &tables,
         clip: &clip,
     };
-    let mut scratch = Scratch::EMPTY;
     let mut output = Output {
         canvas,
         stats,
-        scratch: &mut scratch,
+        queue: &mut [Block::NONE; CELLS],
     };
     frame.start::<RHO>(&root, &mut output);
 }
@@ -146,7 +146,7 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
 
     /// Visits an intermediate cell: skips it, draws its children, or visits
     /// them.
-    fn node<const RHO: u8>(
+    pub(super) fn node<const RHO: u8>(
         &self,
         cell: &Cell,
         record: Record<'_>,
@@ -175,24 +175,46 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
             inside: side == Side::Inside,
             ..*cell
         };
+        self.descend::<RHO>(&cell, record, attribute, &normals, output);
+    }
+
+    /// Draws what lies below a cell: as packed subtrees where the plan allows
+    /// that.
+    #[inline(always)]
+    fn descend<const RHO: u8>(
+        &self,
+        cell: &Cell,
+        record: Record<'_>,
+        attribute: u16,
+        normals: &Normals,
+        output: &mut Output<'_, '_>,
+    ) {
         let w = cell.centre.w;
-        let below = cell.depth + 1;
-        let is_last = |depth: u8| depth == self.plan.depth;
-        let plan = self.plan.level(below);
-        if is_last(below) || w >= plan.stop {
-            let is_packed = w >= plan.packed[0]
-                && self.packed_block::<RHO>(&cell, record.drawn, flags, &normals, output);
-            if !is_packed {
-                self.leaves::<RHO>(&cell, record.drawn, flags, attribute, output);
+        let stops = |levels| w >= self.plan.stop(cell.depth + levels);
+        let packs =
+            |levels: u8| w >= self.plan.level(cell.depth + levels).packed[levels as usize - 1];
+        let shares = |levels: u8| {
+            w >= self.plan.level(cell.depth + levels + 1).siblings[levels as usize - 1]
+        };
+        if stops(1) {
+            let is_drawn = packs(1) && self.packed::<RHO, 1>(cell, record, normals, output);
+            if !is_drawn {
+                let last = record.drawn.last().copied().unwrap_or(0);
+                let flags = Flags::from_last(RHO, last);
+                self.leaves::<RHO>(cell, record.drawn, flags, attribute, output);
             }
             return;
         }
-        let plan = self.plan.level(below + 1);
-        let is_packed = (is_last(below + 1) || w >= plan.stop)
-            && w >= plan.packed[1]
-            && self.packed_tree::<RHO>(&cell, record, &normals, output);
-        if !is_packed {
-            self.children::<RHO>(&cell, record, output);
+        let is_drawn = if stops(2) {
+            packs(2) && self.packed::<RHO, 2>(cell, record, normals, output)
+                || shares(1) && self.siblings::<RHO, 1>(cell, record, normals, output)
+        } else {
+            stops(3) && shares(2) && self.siblings::<RHO, 2>(cell, record, normals, output)
+        };
+        if !is_drawn {
+            self.for_each_child::<RHO>(cell, record, |child, record, attribute| {
+                self.node::<RHO>(&child, record, attribute, output);
+            });
         }
     }
 
@@ -209,14 +231,15 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
         self.clip.side(cell.depth, cell.centre)
     }
 
-    /// Visits the children of a cell, all of which are intermediate: in file
-    /// order, first those that are drawn at their depth, then the others.
-    #[inline(never)]
-    fn children<const RHO: u8>(
-        &self,
+    /// Visits the children of a cell, all of which are intermediate, with
+    /// their records and attributes: in file order, first those that are drawn
+    /// at their depth, then the others.
+    #[inline(always)]
+    pub(super) fn for_each_child<'r, const RHO: u8>(
+        &'r self,
         cell: &Cell,
         record: Record<'_>,
-        output: &mut Output<'_, '_>,
+        mut visit: impl FnMut(Cell, Record<'r>, u16),
     ) {
         let table = self.tables.below(cell.depth);
         let below = usize::from(cell.depth) + 1;
@@ -231,33 +254,30 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
             .zip(cell.first_child..);
         let mut first_child = next.links.get(cell.index).copied().unwrap_or(0) as usize;
         let cells = lists::chunk_rows(RHO) * usize::from(RHO);
-        for chunk in lists::in_file_order::<RHO>(record.node, record.drawn) {
-            let first = chunk.index * cells;
-            let mut list = LISTS[chunk.bits];
-            let own = children.by_ref().take(usize::from(COUNTS[chunk.bits]));
-            for ((&attribute, record), index) in own {
-                let at = first + ((list & 15) as usize ^ 8);
-                list >>= 4;
-                let (Some(&displacement), Some(eye_displacement)) =
-                    (table.displacements.get(at), table.eye_displacements.get(at))
-                else {
-                    return;
-                };
-                let [x, y, z] = cell.view;
-                let child = Cell {
-                    depth: cell.depth + 1,
-                    index,
-                    first_child,
-                    centre: cell.centre.plus(displacement),
-                    view: [
-                        x + eye_displacement[0],
-                        y + eye_displacement[1],
-                        z + eye_displacement[2],
-                    ],
-                    inside: cell.inside,
-                };
-                first_child += lists::count::<RHO>(record.node);
-                self.node::<RHO>(&child, record, attribute, output);
+        for mask in lists::in_file_order::<RHO>(record.node, record.drawn) {
+            for chunk in 0..lists::chunks(RHO) {
+                let bits = mask.chunk(chunk);
+                let mut list = LISTS[bits];
+                let own = children.by_ref().take(usize::from(COUNTS[bits]));
+                for ((&attribute, record), index) in own {
+                    let at = chunk * cells + ((list & 15) as usize ^ 8);
+                    list >>= 4;
+                    let (Some(&displacement), Some(&step)) =
+                        (table.displacements.get(at), table.eye_displacements.get(at))
+                    else {
+                        return;
+                    };
+                    let child = Cell {
+                        depth: cell.depth + 1,
+                        index,
+                        first_child,
+                        centre: cell.centre.plus(displacement),
+                        view: [0, 1, 2].map(|axis| cell.view[axis] + step[axis]),
+                        inside: cell.inside,
+                    };
+                    first_child += Mask::<RHO>::of(record.node).count() as usize;
+                    visit(child, record, attribute);
+                }
             }
         }
     }

@@ -18,12 +18,19 @@ fn shown(words: &[Vec<u32>], x: usize, y: usize, gap: Gap) -> Vec<u32> {
         0 => 0,
         _ => (word + u64::from(gap.base) + (word >> gap.shift)).min(u64::from(u32::MAX)),
     };
-    let pairs = [[at(x - 1, y), at(x + 1, y)], [at(x, y - 1), at(x, y + 1)]];
-    let closes = |[a, b]: &[u64; 2]| {
-        let (deeper, nearer) = (*a.min(b), *a.max(b));
-        deeper > needed(own) && nearer <= needed(deeper)
-    };
-    match pairs.iter().find(|pair| closes(pair)) {
+    let mut best: Option<[u64; 2]> = None;
+    for [dx, dy] in [[1, 0], [0, 1], [1, 1], [-1, 1]] {
+        let beside = |sign: i32| {
+            let along = |from: usize, step: i32| (from as i32 + sign * step) as usize;
+            at(along(x, dx), along(y, dy))
+        };
+        let pair = [beside(-1), beside(1)];
+        let deeper = |[a, b]: [u64; 2]| a.min(b);
+        if deeper(pair) > needed(own) && best.is_none_or(|best| deeper(pair) > deeper(best)) {
+            best = Some(pair);
+        }
+    }
+    match best {
         Some(pair) => pair.map(|word| word as u32).to_vec(),
         None => std::vec![own as u32],
     }

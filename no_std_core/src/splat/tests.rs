@@ -1,5 +1,5 @@
 use super::*;
-use crate::canvas::canvas_len;
+use crate::canvas::{PITCH, canvas_len};
 use crate::target::Rect;
 use crate::testing::Rng;
 use std::string::String;
@@ -42,9 +42,10 @@ impl Board {
         }
         let rows = strip.top..strip.bottom;
         let row = |row| {
-            let lines = canvas.neighbourhood(&(strip.left..strip.right), row);
-            let [_, line, _] = lines.expect("the canvas holds the strip");
-            line[1..=strip.width()].to_vec()
+            let words = canvas.neighbourhoods(&(strip.left..strip.right), row);
+            let line = words.expect("the canvas holds the strip").iter();
+            let line = line.skip(PITCH + 1).take(strip.width());
+            line.copied().collect::<Vec<u32>>()
         };
         rows.flat_map(row).collect()
     }

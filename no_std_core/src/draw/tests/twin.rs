@@ -206,7 +206,7 @@ impl<'a> View<'a> {
                 for at in &mut place {
                     at.error += self.distortion + PACKED_ROUNDING;
                 }
-                let above = usize::from(model.depth()).saturating_sub(2);
+                let above = usize::from(model.depth()).saturating_sub(3);
                 let ratio = (self.reach(above) / point[2]).min(0.5);
                 core.error +=
                     self.depth_scaled(point[2]) * ratio * ratio / (1.0 - ratio).powi(2) + 16.0;

@@ -109,3 +109,63 @@ fn open_cones_never_turn_away() {
         }
     }
 }
+
+/// How often one of two tests turned away, and how often it could have.
+#[derive(Default)]
+struct Found {
+    clear: u32,
+    found: u32,
+}
+
+impl Found {
+    /// Holds one answer against the exact least component.
+    fn hold(&mut self, is_away: bool, least: f64, length: f64, case: &dyn core::fmt::Debug) {
+        assert!(!is_away || least > 0.0, "{case:?}: {least}");
+        if least > 0.2 * length {
+            self.clear += 1;
+            self.found += u32::from(is_away);
+        }
+    }
+
+    fn share(&self) -> f64 {
+        f64::from(self.found) / f64::from(self.clear)
+    }
+}
+
+#[test]
+fn quick_tests_turn_away_only_where_every_normal_does() {
+    let mut rng = Rng::with_seed(13);
+    let (mut alone, mut shared) = (Found::default(), Found::default());
+    for _ in 0..1_000_000 {
+        let flags = Flags {
+            aperture: rng.u8(..15),
+            two_sided: false,
+        };
+        let (code, view) = (rng.u16(..CODES as u16), view(&mut rng));
+        let length = |v: [f64; 3]| dot(v, v).sqrt();
+        let float = |v: [i32; 3]| v.map(f64::from);
+        let size = length(float(view));
+        // A cell within `around` of the view vector's end.
+        let around = (size * rng.f64() * 0.7) as i32;
+        let radius = (f64::from(around) * rng.f64()) as i32;
+        let offset = direction(&mut rng).map(|c| c * f64::from(around - radius));
+        let child = [0, 1, 2].map(|axis| view[axis] + offset[axis] as i32);
+        let exact = |view: [i32; 3]| {
+            let least = least(code, angle(flags.aperture), float(view), f64::from(radius));
+            (least, length(float(view)))
+        };
+        let case = (flags, code, view, child, around, radius);
+        let (bound, distance) = exact(view);
+        let is_away = Normals::new(view, radius).is_away(flags, code);
+        alone.hold(is_away, bound, distance, &case);
+        let (bound, distance) = exact(child);
+        let is_away = Around::new(view, around, radius)
+            .normals(child)
+            .is_away(flags, code);
+        shared.hold(is_away, bound, distance, &case);
+    }
+    let shares = [alone.share(), shared.share()];
+    std::println!("quick cones: {shares:.4?} of {} found", alone.clear);
+    assert!(alone.clear > 50_000 && shared.clear > 50_000);
+    assert!(shares[0] > 0.9 && shares[1] > 0.4, "{shares:?}");
+}

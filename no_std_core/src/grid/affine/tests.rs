@@ -1,5 +1,6 @@
 use super::*;
 use crate::canvas::WINDOW_CENTRE;
+use crate::grid::lists;
 use crate::testing::Rng;
 use crate::testing::view::signed;
 
@@ -40,26 +41,25 @@ fn two_levels<const RHO: u8>(seed: u64) {
             y: (90 << SCREEN_BITS) + fraction(&mut rng),
             depth: rng.u16(1..),
         };
-        let is_narrow = rng.bool();
-        if !steps.fit(&place, rho * rho, is_narrow) {
+        let brush = [Brush::Point, Brush::Wide, Brush::Square][rng.usize(..3)];
+        let reach = steps.reach(rho * rho);
+        if !reach.fits_window(brush) || !reach.fits_depth(&place) {
             continue;
         }
         tried += 1;
-        let mut start = place.step().packed_in_window();
-        if !is_narrow {
-            start = start.wrapping_add(HALF_LEFT);
-        }
-        let mut scratch = Scratch::EMPTY;
-        scratch.blocks.fill::<RHO>(&steps.times(rho).0);
-        scratch.leaves.fill::<RHO>(&steps.0);
+        let start = place.step().packed_in_window();
+        let start = start.wrapping_add(brush.offset());
+        let mut affine = Affine::EMPTY;
+        affine.blocks.fill::<RHO>(&steps.times(rho).0);
+        affine.leaves.fill::<RHO>(&steps.0);
         let cells = 0..RHO.pow(3);
         for (block, leaf) in cells
             .clone()
             .flat_map(|block| cells.clone().map(move |leaf| (block, leaf)))
         {
             let word = start
-                .wrapping_add(displacement::<RHO>(&scratch.blocks, block))
-                .wrapping_add(displacement::<RHO>(&scratch.leaves, leaf));
+                .wrapping_add(displacement::<RHO>(&affine.blocks, block))
+                .wrapping_add(displacement::<RHO>(&affine.leaves, leaf));
             let offset = [0, 1, 2].map(|axis| {
                 let at = |cell: u8| {
                     f64::from(i32::from(cell) / rho.pow(axis) % rho) - f64::from(rho - 1) / 2.0
@@ -73,10 +73,11 @@ fn two_levels<const RHO: u8>(seed: u64) {
                     .sum::<f64>()
             };
             let corner = |pixel: i32| f64::from(pixel - WINDOW_CENTRE);
-            let shift = if is_narrow { 0.0 } else { 0.5 };
+            let (is_wide, is_square) = (brush != Brush::Point, brush == Brush::Square);
+            let [half_left, half_up] = [is_wide, is_square].map(|is| if is { 0.5 } else { 0.0 });
             let want = [
-                (f64::from(place.x) + sum(|step| step.x)) / one - corner(100) - shift,
-                (f64::from(place.y) + sum(|step| step.y)) / one - corner(90),
+                (f64::from(place.x) + sum(|step| step.x)) / one - corner(100) - half_left,
+                (f64::from(place.y) + sum(|step| step.y)) / one - corner(90) - half_up,
                 f64::from(place.depth) + sum(|step| step.depth),
             ];
             let bounds = [11.0 / 32.0, 11.0 / 32.0, f64::from(DEPTH_ROUNDING)];
@@ -87,8 +88,10 @@ fn two_levels<const RHO: u8>(seed: u64) {
                     steps.0
                 );
             }
-            let last = want[0] + if is_narrow { 0.0 } else { 1.0 };
-            assert!(want[0] >= 0.0 && last < 16.0, "{want:?}");
+            // A square's second row lies in the window's spare one.
+            let last = [want[0] + 2.0 * half_left, want[1]];
+            assert!(want[0] >= 0.0 && last[0] < 16.0, "{want:?}");
+            assert!(want[1] >= 0.0 && last[1] < 16.0, "{want:?}");
         }
     }
 }

@@ -1,0 +1,66 @@
+//! The children of a cell as packed subtrees that share one affine map.
+//!
+//! Each child is projected exactly; what lies below it is placed by the map
+//! around its parent, so that tables are filled once for all of them.
+
+use super::affine::Affine;
+use super::facing::{Around, Normals};
+use super::footprint::Place;
+use super::subtree::Subtree;
+use super::traverse::{Cell, Frame, Output, Record};
+use crate::asset::node::Flags;
+use crate::reciprocal::reciprocal;
+
+impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
+    /// Draws what lies SPAN levels below the children of a cell. `false`, with
+    /// nothing done, if such subtrees do not fit a window.
+    #[inline(never)]
+    pub(super) fn siblings<const RHO: u8, const SPAN: usize>(
+        &self,
+        cell: &Cell,
+        record: Record<'_>,
+        normals: &Normals,
+        output: &mut Output<'_, '_>,
+    ) -> bool {
+        let inverse = reciprocal(cell.centre.w as u32);
+        let place = Place::of(self.projection, cell.centre, inverse);
+        let bottom = cell.depth + 1 + SPAN as u8;
+        let mut affine = Affine::EMPTY;
+        let at = (&place, inverse);
+        if !self.map_around::<RHO, SPAN>(cell, at, bottom, normals, &mut affine) {
+            return false;
+        }
+        let radius = |depth| self.tables.extents(depth).eye_radius;
+        let around = Around::new(cell.view, radius(cell.depth), radius(cell.depth + 1));
+        let (stop, above) = (self.plan.stop(bottom), self.plan.stop(bottom - 1));
+        self.for_each_child::<RHO>(cell, record, |child, record, attribute| {
+            let last = record.drawn.last().copied().unwrap_or(0);
+            let flags = Flags::from_last(RHO, last);
+            let normals = around.normals(child.view);
+            let w = child.centre.w;
+            if normals.is_away(flags, attribute) {
+                output.stats.nodes_visited += 1;
+                output.stats.nodes_back_facing += 1;
+                return;
+            }
+            let place = Place::of(self.projection, child.centre, reciprocal(w as u32));
+            let stops = w >= stop && (SPAN == 1 || w < above);
+            if !stops || !affine.reach.fits_depth(&place) {
+                return self.node::<RHO>(&child, record, attribute, output);
+            }
+            output.stats.nodes_visited += 1;
+            if !child.inside && !self.is_near_strip(&place, output) {
+                output.stats.nodes_outside += 1;
+                return;
+            }
+            let subtree = Subtree {
+                cell: &child,
+                record,
+                normals: &normals,
+                affine: &affine,
+            };
+            self.subtree::<RHO, SPAN>(&subtree, &place, output);
+        });
+        true
+    }
+}
