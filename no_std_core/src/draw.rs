@@ -78,7 +78,7 @@ pub fn draw(
     target: &mut Target<'_>,
 ) -> Stats {
     let projection = Projection::new(camera);
-    let plan = Plan::new(grid, camera, quality, &projection);
+    let plan = Plan::with(grid, camera, quality, &projection);
     let shader = Shader::new(light, grid.materials(), shades);
     let mut stats = Stats::default();
     for strip in target.strips() {

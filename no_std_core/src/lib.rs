@@ -28,7 +28,7 @@
 //! asset       bytes in flash -> checked, zero-copy views
 //! camera      eye, directions, focal length
 //! projection  block fixed point: X, Y, w as linear forms; reciprocal
-//! plan        from which distance on which cells are small enough
+//! plan        from which distance on which cells are small enough; what is left out
 //! grid        tables, culling, traversal; packed subtrees  -> samples
 //! splat       cells larger than a pixel -> pixels
 //! canvas      depth << 16 | attribute, a strip at a time; depth test
@@ -80,7 +80,7 @@ pub mod draw;
 mod grid;
 pub mod normal;
 pub mod numbers;
-mod plan;
+pub mod plan;
 pub mod projection;
 pub mod reciprocal;
 mod resolve;

@@ -32,8 +32,9 @@
 //! within 2^-31. What becomes of that on the screen: see `grid/tables.rs`.
 
 use crate::camera::Camera;
-use crate::numbers::{Length, ScreenPx, bit_length, shift_round};
+use crate::numbers::{Length, SCREEN_BITS, ScreenPx, bit_length, shift_round};
 use crate::reciprocal::{Reciprocal, reciprocal};
+use crate::target::Rect;
 
 /// Fraction bits that the basis keeps beyond the block's unit.
 const GUARD_BITS: i32 = 32;
@@ -138,11 +139,46 @@ impl Projection {
         shift_round(1, self.w_scale) + 1
     }
 
-    /// Lower bound of w over the cube, block units.
-    pub fn nearest(&self) -> i32 {
+    /// Bounds of w over the cube, block units.
+    pub fn range(&self) -> [i32; 2] {
         let [_, _, w] = &self.forms;
         let reach: i64 = w.axes.iter().map(|axis| axis.saturating_abs()).sum();
-        ((w.centre - reach) >> GUARD_BITS) as i32 - 2
+        let bound = |w: i64, slack: i64| (w >> GUARD_BITS).saturating_add(slack) as i32;
+        [bound(w.centre - reach, -2), bound(w.centre + reach, 2)]
+    }
+
+    /// Whether the cube lies in front of the near plane and inside the four
+    /// sides of a part of the picture.
+    ///
+    /// X 2^screen_scale = b w is the plane through a side at b pixels from the
+    /// picture's middle: linear, so that the cube's reach across it is the sum
+    /// over its half edges.
+    pub fn holds_cube(&self, part: Rect) -> bool {
+        let scale = self.screen_scale + SCREEN_BITS;
+        if !(0..=30).contains(&scale) || self.range()[0] < self.near {
+            return false;
+        }
+        let [x, y, w] = self.forms.map(|form| {
+            let unit = |value: i64| value >> GUARD_BITS;
+            (unit(form.centre), form.axes.map(unit))
+        });
+        let sides = [
+            (x, -1, part.left, self.middle[0]),
+            (x, 1, part.right, self.middle[0]),
+            (y, -1, part.top, self.middle[1]),
+            (y, 1, part.bottom, self.middle[1]),
+        ];
+        sides
+            .into_iter()
+            .all(|((centre, axes), sign, side, middle)| {
+                let bound = (i64::from(side) << SCREEN_BITS) - i64::from(middle.to_bits());
+                // 30 bits times 30: planes as in `grid/clip.rs`.
+                let across = |screen: i64, w: i64| sign * ((screen << scale) - bound * w);
+                let edges = axes.iter().zip(w.1);
+                let reach: i64 = edges.map(|(&edge, dw)| across(edge, dw).abs()).sum();
+                let slack = 8 * ((1 << scale) + bound.abs());
+                across(centre, w.0) < -reach - slack
+            })
     }
 
     /// What depth lacks to be proportional to 1 / w.

@@ -10,6 +10,13 @@ pub struct Stats {
     pub nodes_back_facing: u32,
     /// Nodes skipped because they lie outside the picture or behind the eye.
     pub nodes_outside: u32,
+    /// Cones tested for facing away.
+    pub facing_tests: u32,
+    /// Cells tested against the sides of a strip.
+    pub side_tests: u32,
     /// Samples that reached the depth test.
     pub samples_drawn: u32,
+    /// Those of them that were projected one by one and drawn as splats of
+    /// their own size.
+    pub splats_drawn: u32,
 }

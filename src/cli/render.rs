@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use rhogrid_core::camera::Camera;
+use rhogrid_core::plan::Plan;
 use rhogrid_core::projection::DepthRange;
 use serde::Serialize;
 
@@ -65,7 +66,10 @@ struct Report {
     nodes_visited: u32,
     nodes_back_facing: u32,
     nodes_outside: u32,
+    facing_tests: u32,
+    side_tests: u32,
     samples_drawn: u32,
+    splats_drawn: u32,
     pixels_written: usize,
     time_ns: u64,
     frames: u32,
@@ -223,6 +227,9 @@ fn draw_grid(
     let output = output_at(args, index);
     let camera = core_camera(&view, &grid, &cube);
     let quality = core_quality(&args.quality);
+    if args.verbose {
+        eprint!("{}", Plan::new(&grid, &camera, &quality));
+    }
     let frame = draw_frame(
         &grid,
         &camera,
@@ -293,7 +300,10 @@ impl Report {
             nodes_visited: frame.stats.nodes_visited,
             nodes_back_facing: frame.stats.nodes_back_facing,
             nodes_outside: frame.stats.nodes_outside,
+            facing_tests: frame.stats.facing_tests,
+            side_tests: frame.stats.side_tests,
             samples_drawn: frame.stats.samples_drawn,
+            splats_drawn: frame.stats.splats_drawn,
             pixels_written: frame.depth.iter().filter(|&&depth| depth > 0).count(),
             time_ns: frame.time_ns,
             frames,
@@ -318,8 +328,15 @@ fn print(args: &RenderArgs, report: &Report) -> Result<(), Failure> {
     ))?;
     if args.verbose {
         super::say(format_args!(
-            "  nodes: {} visited, {} back-facing, {} outside; median of {} frames",
-            report.nodes_visited, report.nodes_back_facing, report.nodes_outside, report.frames
+            "  work: {} nodes, {} back-facing, {} outside; {} facing tests, {} side tests; \
+             {} samples one by one; median of {} frames",
+            report.nodes_visited,
+            report.nodes_back_facing,
+            report.nodes_outside,
+            report.facing_tests,
+            report.side_tests,
+            report.splats_drawn,
+            report.frames
         ))?;
     }
     if let Some(measures) = &report.measures {

@@ -380,6 +380,40 @@ fn counters_count_masks() {
 }
 
 #[test]
+fn what_the_plan_leaves_out_is_not_done() {
+    let mut rng = Rng::with_seed(70);
+    let (mut without_sides, mut without_faces) = (0, 0);
+    for case in 0..600 {
+        let mut file = model(&mut rng, 200.0).file();
+        file.header[14] = u8::from(rng.bool());
+        let bytes = aligned(&file.bytes());
+        let grid = Grid::open(&bytes).expect("models are valid");
+        let camera = match rng.bool() {
+            true => near_camera(&mut rng, 30.0, 96.0),
+            false => {
+                // Far enough for the picture to hold the cube, or nearly.
+                let (back, upwards) = (direction(&mut rng), direction(&mut rng));
+                let eye = back.map(|c| c * (2.0 + 8.0 * rng.f64()));
+                looking(eye, back.map(|c| -c), upwards, 60.0, 64, 64)
+            }
+        };
+        let (quality, band) = (Quality::default(), whole(&camera));
+        let plan = Plan::new(&grid, &camera, &quality);
+        let rows = camera.height;
+        let stats = frame_of(&grid, &camera, &AMBIENT, &quality, band, rows, &mut []).stats;
+        let tests = [stats.side_tests, stats.facing_tests];
+        let case = std::format!("case {case}: {plan}{stats:?}");
+        assert!(plan.culls || tests[0] == 0, "{case}");
+        assert!(plan.faces || tests[1] == 0, "{case}");
+        assert!(plan.culls || stats.nodes_outside == 0, "{case}");
+        without_sides += u32::from(!plan.culls && stats.nodes_visited > 1);
+        without_faces += u32::from(!plan.faces && stats.nodes_visited > 1);
+    }
+    assert!(without_sides > 20, "{without_sides} frames without sides");
+    assert!(without_faces > 100, "{without_faces} frames without faces");
+}
+
+#[test]
 fn back_facing_cones_hide_exactly_what_leaves_would() {
     // A sphere's cells: culling by cones must not change the picture.
     let mut rng = Rng::with_seed(68);

@@ -218,6 +218,22 @@ impl Normals {
         }
     }
 
+    /// How all of a cell faces, by its cone.
+    #[inline(always)]
+    pub fn facing(&self, flags: Flags, code: u16) -> Facing {
+        let Some(&sine) = TEST_SINE.get(usize::from(flags.aperture)) else {
+            return Facing::Maybe;
+        };
+        let (along, limit) = (self.along(code), sine + self.doubt);
+        if along > limit {
+            Facing::Away
+        } else if along < -limit {
+            Facing::Toward
+        } else {
+            Facing::Maybe
+        }
+    }
+
     /// The attribute of a sheet's sample as it is seen.
     #[inline(always)]
     pub fn turned(&self, attribute: u16) -> u16 {

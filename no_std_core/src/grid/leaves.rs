@@ -117,6 +117,7 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
 #[inline(always)]
 fn splat(place: Place, extent: &Extent, attribute: u16, output: &mut Output<'_, '_>) {
     output.stats.samples_drawn += 1;
+    output.stats.splats_drawn += 1;
     let splat = Splat {
         x: place.x,
         y: place.y,

@@ -4,7 +4,7 @@
 //! around its parent, so that tables are filled once for all of them.
 
 use super::affine::Affine;
-use super::facing::{Around, Normals};
+use super::facing::{Around, Facing, Normals};
 use super::footprint::Place;
 use super::subtree::Subtree;
 use super::traverse::{Cell, Frame, Output, Record};
@@ -38,7 +38,12 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
             let flags = Flags::from_last(RHO, last);
             let normals = around.normals(child.view);
             let w = child.centre.w;
-            if normals.is_away(flags, attribute) {
+            let facing = match self.plan.faces {
+                true => normals.facing(flags, attribute),
+                false => Facing::Toward,
+            };
+            output.stats.facing_tests += u32::from(self.plan.faces);
+            if facing == Facing::Away {
                 output.stats.nodes_visited += 1;
                 output.stats.nodes_back_facing += 1;
                 return;
@@ -57,6 +62,7 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
                 cell: &child,
                 record,
                 normals: &normals,
+                facing,
                 affine: &affine,
             };
             self.subtree::<RHO, SPAN>(&subtree, &place, output);

@@ -1,7 +1,7 @@
 //! Packed subtrees: from an exactly projected cell down to points.
 
 use super::affine::Affine;
-use super::facing::Normals;
+use super::facing::{Facing, Normals};
 use super::footprint::Place;
 use super::lists::{self, COUNTS, LISTS, Mask};
 use super::packed::{Block, Brush, draw_blocks};
@@ -19,6 +19,7 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
         &self,
         cell: &Cell,
         record: Record<'_>,
+        attribute: u16,
         normals: &Normals,
         output: &mut Output<'_, '_>,
     ) -> bool {
@@ -33,10 +34,16 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
             return false;
         }
         if cell.inside || self.is_near_strip(&place, output) {
+            let last = record.drawn.last().copied().unwrap_or(0);
+            let flags = Flags::from_last(RHO, last);
             let subtree = Subtree {
                 cell,
                 record,
                 normals,
+                facing: match self.plan.faces {
+                    true => normals.facing(flags, attribute),
+                    false => Facing::Toward,
+                },
                 affine: &affine,
             };
             self.subtree::<RHO, SPAN>(&subtree, &place, output);
@@ -55,9 +62,11 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
         let Subtree { cell, affine, .. } = subtree;
         let start = place.step().packed_in_window();
         let start = start.wrapping_add(affine.brush.offset());
-        let blocks = match SPAN {
-            1 => block(cell, start, output.queue),
-            _ => self.blocks::<RHO>(subtree, start, output.queue, output.stats),
+        let (queue, stats) = (&mut *output.queue, &mut *output.stats);
+        let blocks = match (SPAN, subtree.facing) {
+            (1, _) => block(cell, start, queue),
+            (_, Facing::Toward) => self.blocks::<RHO, false>(subtree, start, queue, stats),
+            _ => self.blocks::<RHO, true>(subtree, start, queue, stats),
         };
         let bottom = usize::from(cell.depth) + SPAN;
         let window = output
@@ -74,9 +83,9 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
         output.stats.samples_drawn += draw(blocks, level, &affine.leaves, subtree.normals, window);
     }
 
-    /// The children of the cell that do not face away.
+    /// The children of the cell; without those that face away, if any may.
     #[inline(never)]
-    fn blocks<'q, const RHO: u8>(
+    fn blocks<'q, const RHO: u8, const FACES: bool>(
         &self,
         subtree: &Subtree<'_>,
         start: u32,
@@ -110,9 +119,8 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
                     let place = pivot.wrapping_add(blocks.cells[(list & 15) as usize]);
                     list >>= 4;
                     let last = own.drawn.last().copied().unwrap_or(0);
-                    if !normals.is_away(Flags::from_last(RHO, last), axis)
-                        && let Some(block) = queue.get_mut(kept)
-                    {
+                    let is_away = FACES && normals.is_away(Flags::from_last(RHO, last), axis);
+                    if !is_away && let Some(block) = queue.get_mut(kept) {
                         *block = Block {
                             place,
                             record,
@@ -126,6 +134,7 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
         }
         stats.nodes_visited += visited;
         stats.nodes_back_facing += visited - kept as u32;
+        stats.facing_tests += if FACES { visited } else { 0 };
         queue.get(..kept).unwrap_or(&[])
     }
 }
@@ -135,6 +144,8 @@ pub(super) struct Subtree<'a> {
     pub cell: &'a Cell,
     pub record: Record<'a>,
     pub normals: &'a Normals,
+    /// How all of it faces.
+    pub facing: Facing,
     pub affine: &'a Affine,
 }
 

@@ -108,7 +108,7 @@ fn run<const RHO: u8, const CELLS: usize, const LEVELS: usize>(
         first_child: 0,
         centre: tables.centre,
         view: eye_space.centre,
-        inside: false,
+        inside: projection.holds_cube(canvas.strip),
     };
     let frame = Frame::<CELLS, LEVELS> {
         grid,
@@ -159,13 +159,18 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
         };
         let flags = Flags::from_last(RHO, last);
         let normals = Normals::new(cell.view, self.tables.extents(cell.depth).eye_radius);
-        if normals.is_away(flags, attribute) {
-            output.stats.nodes_back_facing += 1;
-            return;
+        if self.plan.faces {
+            output.stats.facing_tests += 1;
+            if normals.is_away(flags, attribute) {
+                output.stats.nodes_back_facing += 1;
+                return;
+            }
         }
-        let side = match cell.inside {
-            true => Side::Inside,
-            false => self.side(cell),
+        let side = if cell.inside {
+            Side::Inside
+        } else {
+            output.stats.side_tests += 1;
+            self.side(cell)
         };
         if side == Side::Outside {
             output.stats.nodes_outside += 1;
@@ -197,7 +202,8 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
             w >= self.plan.level(cell.depth + levels + 1).siblings[levels as usize - 1]
         };
         if stops(1) {
-            let is_drawn = packs(1) && self.packed::<RHO, 1>(cell, record, normals, output);
+            let is_drawn =
+                packs(1) && self.packed::<RHO, 1>(cell, record, attribute, normals, output);
             if !is_drawn {
                 let last = record.drawn.last().copied().unwrap_or(0);
                 let flags = Flags::from_last(RHO, last);
@@ -206,7 +212,7 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
             return;
         }
         let is_drawn = if stops(2) {
-            packs(2) && self.packed::<RHO, 2>(cell, record, normals, output)
+            packs(2) && self.packed::<RHO, 2>(cell, record, attribute, normals, output)
                 || shares(1) && self.siblings::<RHO, 1>(cell, record, normals, output)
         } else {
             stops(3) && shares(2) && self.siblings::<RHO, 2>(cell, record, normals, output)
