@@ -47,22 +47,26 @@
 //! use rhogrid_core::numbers::{FocalPx, Length, Turns, Unit, Weight};
 //! use rhogrid_core::target::Target;
 //!
+//! // Constants: at run time, a decimal's parser would be linked, too.
+//! const LIGHT: Light = Light {
+//!     towards: [Unit::lit("0.6"), Unit::lit("0.8"), Unit::ZERO],
+//!     ambient: Weight::lit("0.2"),
+//!     diffuse: Weight::lit("0.8"),
+//! };
+//! const FOCAL: FocalPx = FocalPx::lit("320");
+//! const DISTANCE: Length = Length::lit("2.6");
+//!
 //! fn show(asset: &[u8], colour: &mut [u16], canvas: &mut [u32]) -> Result<(), AssetError> {
 //!     let grid = Grid::open(asset)?;
 //!     let orbit = Orbit {
 //!         yaw: Turns::from_bits(1 << 29),
 //!         pitch: Turns::from_bits(1 << 27),
-//!         distance: grid.radius() * Length::lit("2.6"),
+//!         distance: grid.radius() * DISTANCE,
 //!     };
-//!     let camera = Camera::orbit(&orbit, FocalPx::lit("320"), 240, 320);
-//!     let light = Light {
-//!         towards: [Unit::lit("0.6"), Unit::lit("0.8"), Unit::ZERO],
-//!         ambient: Weight::lit("0.2"),
-//!         diffuse: Weight::lit("0.8"),
-//!     };
+//!     let camera = Camera::orbit(&orbit, FOCAL, 240, 320);
 //!     let mut shades = [0; shades_len(1)];
 //!     if let Ok(mut target) = Target::new(240, 320, colour, canvas) {
-//!         draw(&grid, &camera, &light, &Quality::default(), &mut shades, &mut target);
+//!         draw(&grid, &camera, &LIGHT, &Quality::default(), &mut shades, &mut target);
 //!     }
 //!     Ok(())
 //! }

@@ -35,6 +35,7 @@ pub(crate) fn resolve(
     shader: &Shader<'_>,
     picture: &mut Picture<'_>,
 ) {
+    let repair = repair.filter(|_| cfg!(feature = "repair"));
     let strip = canvas.strip;
     let (columns, rows) = canvas.touched();
     for row in strip.top..strip.bottom {

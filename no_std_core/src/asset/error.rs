@@ -32,6 +32,11 @@ pub enum AssetError {
         /// The value found.
         rho: u8,
     },
+    /// This build of the core leaves out grids of such a rho.
+    LeftOut {
+        /// The value found.
+        rho: u8,
+    },
     /// More subdivisions than rho allows.
     Depth {
         /// The value found.
@@ -122,6 +127,10 @@ impl fmt::Display for AssetError {
             Self::Rho { rho } => {
                 write!(f, "byte 9: rho is {rho}, not 2 to 5; bake the asset again")
             }
+            Self::LeftOut { rho } => write!(
+                f,
+                "byte 9: this build leaves out rho {rho}; enable rhogrid-core's feature rho-{rho}"
+            ),
             Self::Depth { depth } => write!(
                 f,
                 "byte 10: {depth} subdivisions are too many for this rho; bake the asset again"

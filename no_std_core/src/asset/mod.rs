@@ -113,6 +113,25 @@ pub const fn max_depth(rho: u8) -> u8 {
     }
 }
 
+/// Whether this build draws grids of a rho: its features say so.
+pub fn is_built(rho: u8) -> bool {
+    const BUILT: [(u8, bool); 4] = [
+        (2, cfg!(feature = "rho-2")),
+        (3, cfg!(feature = "rho-3")),
+        (4, cfg!(feature = "rho-4")),
+        (5, cfg!(feature = "rho-5")),
+    ];
+    BUILT.contains(&(rho, true))
+}
+
+#[cfg(not(any(
+    feature = "rho-2",
+    feature = "rho-3",
+    feature = "rho-4",
+    feature = "rho-5"
+)))]
+compile_error!("enable at least one of the features rho-2, rho-3, rho-4 and rho-5");
+
 /// Which cells of the surface's neighbourhood an asset holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shell {
@@ -212,6 +231,9 @@ impl<'a> Grid<'a> {
         let (rho, depth) = (field(9)?, field(10)?);
         if !(2..=5).contains(&rho) {
             return Err(AssetError::Rho { rho });
+        }
+        if !is_built(rho) {
+            return Err(AssetError::LeftOut { rho });
         }
         if depth > max_depth(rho) {
             return Err(AssetError::Depth { depth });

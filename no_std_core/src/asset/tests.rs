@@ -7,6 +7,8 @@ use crate::testing::model::seal;
 use crate::testing::{File, Model, Rng, aligned};
 use std::vec::Vec;
 
+mod left_out;
+
 /// Greatest depth a grid of a rho is made with here.
 const DEPTH: u8 = 3;
 

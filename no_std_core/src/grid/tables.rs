@@ -94,22 +94,24 @@ pub(crate) struct Tables<const CELLS: usize, const LEVELS: usize> {
 }
 
 impl<const CELLS: usize, const LEVELS: usize> Tables<CELLS, LEVELS> {
+    /// To be filled where it lies: a table that moves is on the stack twice.
+    pub const EMPTY: Self = Self {
+        levels: [LevelTable::EMPTY; LEVELS],
+        root: LevelTable::<1>::EMPTY,
+        centre: Point { x: 0, y: 0, w: 0 },
+    };
+
     /// Fills the tables of `depth` levels.
-    pub fn new(rho: u8, depth: u8, projection: &Projection, eye_unit: i32) -> Self {
+    pub fn fill(&mut self, rho: u8, depth: u8, projection: &Projection, eye_unit: i32) {
         let rho = i64::from(rho);
-        let mut tables = Self {
-            levels: [LevelTable::EMPTY; LEVELS],
-            root: LevelTable::<1>::EMPTY,
-            centre: point(projection, |form| form.centre),
-        };
+        self.centre = point(projection, |form| form.centre);
         let mut cells_per_axis = 1i64;
-        tables.root.set_extents(projection, 1, eye_unit, 0);
-        for (level, depth) in tables.levels.iter_mut().zip(1..=i32::from(depth)) {
+        self.root.set_extents(projection, 1, eye_unit, 0);
+        for (level, depth) in self.levels.iter_mut().zip(1..=i32::from(depth)) {
             cells_per_axis *= rho;
             level.set_extents(projection, cells_per_axis, eye_unit, depth);
             level.set_displacements(rho, cells_per_axis, projection, eye_unit);
         }
-        tables
     }
 
     /// The table of displacements from cells of a depth to their subcells; its

@@ -83,10 +83,16 @@ pub(crate) fn traverse(
     stats: &mut Stats,
 ) {
     match grid.rho() {
+        #[cfg(feature = "rho-2")]
         2 => run::<2, 8, 15>(grid, camera, projection, plan, canvas, stats),
+        #[cfg(feature = "rho-3")]
         3 => run::<3, 27, 9>(grid, camera, projection, plan, canvas, stats),
+        #[cfg(feature = "rho-4")]
         4 => run::<4, 64, 7>(grid, camera, projection, plan, canvas, stats),
-        _ => run::<5, 125, 6>(grid, camera, projection, plan, canvas, stats),
+        #[cfg(feature = "rho-5")]
+        5 => run::<5, 125, 6>(grid, camera, projection, plan, canvas, stats),
+        // None opens.
+        _ => {}
     }
 }
 
@@ -100,7 +106,8 @@ fn run<const RHO: u8, const CELLS: usize, const LEVELS: usize>(
     stats: &mut Stats,
 ) {
     let eye_space = EyeSpace::new(camera);
-    let tables = Tables::new(RHO, plan.depth, projection, eye_space.unit);
+    let mut tables = Tables::EMPTY;
+    tables.fill(RHO, plan.depth, projection, eye_space.unit);
     let clip = Clip::new(projection, &tables, plan.depth, canvas.strip);
     let root = Cell {
         depth: 0,

@@ -27,7 +27,8 @@ fn descend<const CELLS: usize, const LEVELS: usize>(
 ) {
     let projection = Projection::new(camera);
     let eye_space = EyeSpace::new(camera);
-    let tables = Tables::<CELLS, LEVELS>::new(rho, LEVELS as u8, &projection, eye_space.unit);
+    let mut tables = Tables::<CELLS, LEVELS>::EMPTY;
+    tables.fill(rho, LEVELS as u8, &projection, eye_space.unit);
     for _ in 0..4 {
         let mut step = Step {
             depth: 0,
