@@ -4,7 +4,7 @@ use super::affine::Affine;
 use super::facing::{Facing, Normals};
 use super::footprint::Place;
 use super::lists::{self, COUNTS, LISTS, Mask};
-use super::packed::{Block, Brush, draw_blocks};
+use super::packed::{Block, Brush, Subcells, draw_blocks};
 use super::traverse::{Cell, Frame, Output, Record, records};
 use crate::asset::node::Flags;
 use crate::numbers::SCREEN_BITS;
@@ -99,39 +99,29 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
         let (Some(level), Some(next)) = (levels.get(below), levels.get(below + 1)) else {
             return &[];
         };
+        let count = place_children::<RHO>(record, start, blocks, queue);
         let axes = level.attributes.get(cell.first_child..).unwrap_or(&[]);
-        let mut children = axes
-            .iter()
-            .zip(records::<RHO>(next, cell.first_child))
-            .zip(cell.first_child as u32..);
+        let children = axes.iter().zip(records::<RHO>(next, cell.first_child));
         let mut first = next.links.get(cell.index).copied().unwrap_or(0);
-        let (mut visited, mut kept) = (0, 0);
-        for mask in lists::in_file_order::<RHO>(record.node, record.drawn) {
-            for index in 0..lists::chunks(RHO) {
-                let bits = mask.chunk(index);
-                if bits == 0 {
-                    continue;
-                }
-                let mut list = LISTS[bits];
-                let pivot = start.wrapping_add(blocks.chunks[index]);
-                visited += u32::from(COUNTS[bits]);
-                for ((&axis, own), record) in children.by_ref().take(usize::from(COUNTS[bits])) {
-                    let place = pivot.wrapping_add(blocks.cells[(list & 15) as usize]);
-                    list >>= 4;
-                    let last = own.drawn.last().copied().unwrap_or(0);
-                    let is_away = FACES && normals.is_away(Flags::from_last(RHO, last), axis);
-                    if !is_away && let Some(block) = queue.get_mut(kept) {
-                        *block = Block {
-                            place,
-                            record,
-                            first,
-                        };
-                        kept += 1;
-                    }
-                    first += Mask::<RHO>::of(own.node).count();
-                }
+        let mut kept = 0;
+        for (index, (&axis, own)) in (0..count).zip(children) {
+            let last = own.drawn.last().copied().unwrap_or(0);
+            let is_away = FACES && normals.is_away(Flags::from_last(RHO, last), axis);
+            // Kept blocks move up: none is overwritten before it is read.
+            if !is_away
+                && let Some(&Block { place, .. }) = queue.get(index)
+                && let Some(block) = queue.get_mut(kept)
+            {
+                *block = Block {
+                    place,
+                    record: (cell.first_child + index) as u32,
+                    first,
+                };
+                kept += 1;
             }
+            first += Mask::<RHO>::of(own.node).count();
         }
+        let visited = count as u32;
         stats.nodes_visited += visited;
         stats.nodes_back_facing += visited - kept as u32;
         stats.facing_tests += if FACES { visited } else { 0 };
@@ -161,4 +151,29 @@ fn block<'q>(cell: &Cell, start: u32, queue: &'q mut [Block]) -> &'q [Block] {
         first: cell.first_child as u32,
     }];
     own
+}
+
+/// Writes the places of a cell's children, in file order, to a queue; gives
+/// their number.
+#[inline(always)]
+fn place_children<const RHO: u8>(
+    record: Record<'_>,
+    start: u32,
+    blocks: &Subcells,
+    queue: &mut [Block],
+) -> usize {
+    let room = queue.len();
+    let mut free = queue.iter_mut();
+    for mask in lists::in_file_order::<RHO>(record.node, record.drawn) {
+        for index in 0..lists::chunks(RHO) {
+            let bits = mask.chunk(index);
+            let mut list = LISTS[bits];
+            let pivot = start.wrapping_add(blocks.chunks[index]);
+            for block in free.by_ref().take(usize::from(COUNTS[bits])) {
+                block.place = pivot.wrapping_add(blocks.cells[(list & 15) as usize]);
+                list >>= 4;
+            }
+        }
+    }
+    room - free.len()
 }
