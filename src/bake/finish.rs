@@ -9,11 +9,12 @@ use std::ops::Range;
 use rhogrid_core::asset::Shell;
 use rhogrid_core::asset::node::halves;
 
-use super::shell::{BakedLevel, TouchedLevel};
+use super::shell::BakedLevel;
+use super::touched::TouchedLevel;
 
 /// Chooses, orders and records the cells of levels of depth 0 to depth.
 pub(super) fn finish(rho: u8, shell: Shell, levels: &[TouchedLevel]) -> Vec<BakedLevel> {
-    let children: Vec<Vec<Range<usize>>> = levels.iter().map(children).collect();
+    let children: Vec<Vec<Range<usize>>> = levels.iter().map(TouchedLevel::children).collect();
     let stored = stored(shell, levels, &children);
     let mut baked = Vec::new();
     // Indices of the stored cells of the level above, in file order.
@@ -42,7 +43,7 @@ pub(super) fn finish(rho: u8, shell: Shell, levels: &[TouchedLevel]) -> Vec<Bake
                     records[start + bit / 16] |= 1 << (bit % 16);
                 }
                 if let Some(last) = records.last_mut() {
-                    *last |= level.above[parent].0.to_last(rho);
+                    *last |= level.above[parent].flags.to_last(rho);
                 }
             };
             record(&mut out.nodes, &own[first..]);
@@ -58,17 +59,6 @@ pub(super) fn finish(rho: u8, shell: Shell, levels: &[TouchedLevel]) -> Vec<Bake
         order = own;
     }
     baked
-}
-
-/// For each cell above a level the indices of its children.
-fn children(level: &TouchedLevel) -> Vec<Range<usize>> {
-    let mut end = 0;
-    let ranges = level.above.iter().map(|&(_, count)| {
-        let start = end;
-        end += usize::from(count);
-        start..end
-    });
-    ranges.collect()
 }
 
 /// Which cells of each level stay, from the finest up.

@@ -2,12 +2,14 @@
 //! through [`writer`].
 
 mod cone;
+mod filter;
 mod finish;
 mod overlap;
 mod points;
 mod shell;
 mod surface;
 mod thin;
+mod touched;
 mod triangles;
 pub mod writer;
 

@@ -10,11 +10,13 @@ use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 use rhogrid_core::asset::node::{APERTURE_ALL, Flags};
 use rhogrid_core::asset::{Rgb, Shell};
-use rhogrid_core::normal::encode;
 
+use super::cone::Sides;
+use super::filter::filter;
 use super::finish::finish;
 use super::surface::{Aabb, Sample, Surface};
 use super::thin::{Standing, column, cross_hair, thin_subset};
+use super::touched::{Above, Touched, TouchedLevel};
 use super::{Cube, GridOptions, Progress, cone};
 use crate::geometry::Up;
 
@@ -63,25 +65,11 @@ struct Cell {
     neighbourhood: Vec<u32>,
 }
 
-/// A touched cell of a finished level.
-pub(super) struct Touched {
-    /// Which subcell of its parent it is.
-    pub bit: u8,
-    pub is_thin: bool,
-    pub attribute: u16,
-}
-
-/// A finished level: every touched cell, and what was told of those above.
-pub(super) struct TouchedLevel {
-    /// Flags of the cells above, and how many children each has.
-    pub above: Vec<(Flags, u8)>,
-    /// Children of one cell are contiguous, in the order of their bits.
-    pub cells: Vec<Touched>,
-}
-
-/// A cell's flags and children.
+/// A cell's children, and what they ask of its record.
 struct Subdivision {
-    flags: Flags,
+    two_sided: bool,
+    /// Normal codes of all faces, where children hold opposed ones.
+    faces: Vec<u16>,
     children: Vec<Child>,
 }
 
@@ -126,7 +114,7 @@ pub(super) fn bake<S: Surface>(
             cells: cells.len() as u64,
         });
         let leaves = above + 1 == depth;
-        let done: Vec<Subdivision> = cells
+        let mut done: Vec<Subdivision> = cells
             .par_chunks(CHUNK)
             .flat_map_iter(|chunk| {
                 let done: Vec<Subdivision> = chunk
@@ -139,31 +127,42 @@ pub(super) fn bake<S: Surface>(
                 done
             })
             .collect();
-        let children = || done.iter().flat_map(|cell| &cell.children);
-        let standings: Vec<([u32; 3], Standing)> = children()
-            .filter_map(|child| Some((child.cell.place, child.standing?)))
-            .collect();
-        let mut thin = thin_subset(&standings).into_iter();
-        levels.push(TouchedLevel {
-            above: done
-                .iter()
-                .map(|cell| (cell.flags, cell.children.len() as u8))
-                .collect(),
-            cells: children()
-                .map(|child| Touched {
-                    bit: child.bit,
-                    is_thin: thin.next().unwrap_or(true),
-                    attribute: child.cell.attribute,
-                })
-                .collect(),
-        });
+        levels.push(touched(&mut done));
         cells = done
             .into_iter()
             .flat_map(|cell| cell.children)
             .map(|child| child.cell)
             .collect();
     }
+    filter(&mut levels, options.two_sided);
     finish(options.rho, options.shell, &levels)
+}
+
+/// The level of all children.
+fn touched(done: &mut [Subdivision]) -> TouchedLevel {
+    let children = || done.iter().flat_map(|cell| &cell.children);
+    let standings: Vec<([u32; 3], Standing)> = children()
+        .filter_map(|child| Some((child.cell.place, child.standing?)))
+        .collect();
+    let mut thin = thin_subset(&standings).into_iter();
+    let cells = children().map(|child| Touched {
+        bit: child.bit,
+        is_thin: thin.next().unwrap_or(true),
+        attribute: child.cell.attribute,
+    });
+    let cells = cells.collect();
+    let above = done.iter_mut().map(|cell| Above {
+        flags: Flags {
+            aperture: APERTURE_ALL,
+            two_sided: cell.two_sided,
+        },
+        children: cell.children.len() as u8,
+        faces: std::mem::take(&mut cell.faces),
+    });
+    TouchedLevel {
+        above: above.collect(),
+        cells,
+    }
 }
 
 impl<S: Surface> Baker<'_, S> {
@@ -177,6 +176,7 @@ impl<S: Surface> Baker<'_, S> {
             .collect();
         let mut children = Vec::new();
         let mut two_sided = self.options.two_sided;
+        let mut is_opposed = false;
         for bit in 0..rho.pow(3) {
             let within = [bit % rho, bit / rho % rho, bit / (rho * rho)];
             let place = [0, 1, 2].map(|i| cell.place[i] * rho + within[i]);
@@ -193,15 +193,16 @@ impl<S: Surface> Baker<'_, S> {
             }
             let centre = bounds.min.midpoint(bounds.max);
             let (primitive, sample) = self.nearest(centre, &near);
+            let facing = self.surface.facing(primitive);
             // A file cut behind this level has these children as its leaves.
-            if !two_sided {
-                let own = self.surface.facing(primitive);
-                let faces = self.faces(&near, &bounds);
-                two_sided = cone::needs_both_sides(sample.normal, own, faces);
+            if !is_opposed && !self.options.two_sided {
+                let sides = cone::sides(sample.normal, facing, self.faces(&near, &bounds));
+                two_sided |= sides != Sides::Front;
+                is_opposed = sides == Sides::Opposed;
             }
             let standing = (self.options.shell == Shell::Thin).then(|| Standing {
                 crossed: self.crossed(&near, &bounds, slack(axis)),
-                column: column(self.surface.facing(primitive).unwrap_or(sample.normal)),
+                column: column(facing.unwrap_or(sample.normal)),
             });
             let cell = Cell {
                 place,
@@ -218,16 +219,15 @@ impl<S: Surface> Baker<'_, S> {
                 standing,
             });
         }
-        let own = boxes(cell.place, axis / rho).0;
-        let aperture = match self.options.two_sided {
-            true => APERTURE_ALL,
-            false => cone::aperture(cell.attribute, self.faces(&bounded, &own)),
+        let faces = match is_opposed {
+            true => self.codes(&bounded, &boxes(cell.place, axis / rho).0),
+            false => Vec::new(),
         };
-        let flags = Flags {
-            aperture,
+        Subdivision {
             two_sided,
-        };
-        Subdivision { flags, children }
+            faces,
+            children,
+        }
     }
 
     /// Which segments of a cell's cross-hair the surface meets.
@@ -248,6 +248,14 @@ impl<S: Surface> Baker<'_, S> {
         near.iter()
             .filter(|(primitive, own)| own.meets(cell) && self.surface.touches(*primitive, cell))
             .filter_map(|(primitive, _)| self.surface.facing(*primitive))
+    }
+
+    /// The normal codes of the faces that touch a cell, each once.
+    fn codes(&self, near: &[(u32, Aabb)], cell: &Aabb) -> Vec<u16> {
+        let mut codes: Vec<u16> = self.faces(near, cell).map(cone::code).collect();
+        codes.sort_unstable();
+        codes.dedup();
+        codes
     }
 
     /// The nearest point to a centre, and the primitive that it lies on.
@@ -312,9 +320,5 @@ fn boxes(place: [u32; 3], axis: u32) -> (Aabb, Aabb) {
 }
 
 fn attribute(sample: &Sample) -> u16 {
-    let scaled = sample
-        .normal
-        .to_array()
-        .map(|c| (f64::from(c) * f64::from(1 << 26)) as i32);
-    encode(scaled) | u16::from(sample.material) << 13
+    cone::code(sample.normal) | u16::from(sample.material) << 13
 }

@@ -4,6 +4,7 @@ use rhogrid::asset_file::AssetFile;
 use rhogrid::cli::draw_frame;
 use rhogrid::geometry::Mesh;
 use rhogrid::import::procedural::shapes;
+use rhogrid_core::asset::node::{flags_shift, halves};
 use rhogrid_core::asset::{AssetError, HEADER_BYTES, SECTION_BYTES, SECTION_LEVEL};
 use rhogrid_core::camera::{Camera, Orbit};
 use rhogrid_core::draw::{Light, Quality};
@@ -25,6 +26,17 @@ fn level_ends(bytes: &[u8]) -> Vec<usize> {
         .collect()
 }
 
+/// Node records without their flags.
+fn occupancy(rho: u8, nodes: &[u16]) -> Vec<u16> {
+    let size = halves(rho);
+    let flags = 31 << flags_shift(rho);
+    let without = |(index, &half): (usize, &u16)| match (index + 1) % size {
+        0 => half & !flags,
+        _ => half,
+    };
+    nodes.iter().enumerate().map(without).collect()
+}
+
 fn check(mesh: &Mesh, rho: u8, level: u8) {
     let whole = baked(mesh, &options(rho, level));
     let ends = level_ends(whole.bytes());
@@ -42,9 +54,12 @@ fn check(mesh: &Mesh, rho: u8, level: u8) {
         }
         let coarse = baked(mesh, &options(rho, depth as u8 - 1));
         for (a, b) in grid.levels().iter().zip(coarse.grid().levels()) {
-            assert_eq!(a.attributes, b.attributes, "rho {rho}, depth {depth}");
+            // The longer file's normals and cones are those of its finest
+            // samples.
+            let materials = |of: &[u16]| -> Vec<u16> { of.iter().map(|own| own >> 13).collect() };
+            assert_eq!(materials(a.attributes), materials(b.attributes));
             assert_eq!(a.links, b.links);
-            assert_eq!(a.nodes, b.nodes, "rho {rho}, depth {depth}");
+            assert_eq!(occupancy(rho, a.nodes), occupancy(rho, b.nodes));
         }
         assert_eq!(grid.levels().len(), coarse.grid().levels().len());
     }
@@ -60,17 +75,19 @@ fn every_level_boundary_ends_a_coarser_model() {
     }
 }
 
-/// Of every depth, in file order: places and attributes of what is drawn.
+/// Of every depth, in file order: places and materials of what is drawn.
 fn drawn(asset: &AssetFile) -> Vec<Vec<([u32; 3], u16)>> {
     let of = |depth: Vec<super::cells::Cell>| {
         let drawn = depth.into_iter().filter(|cell| cell.is_drawn);
-        drawn.map(|cell| (cell.place, cell.attribute)).collect()
+        drawn
+            .map(|cell| (cell.place, cell.attribute >> 13))
+            .collect()
     };
     cells(&asset.grid()).into_iter().map(of).collect()
 }
 
-/// Colours and depths of a view.
-fn picture(asset: &AssetFile, yaw: f64, distance: f64, splat: u16) -> (Vec<u16>, Vec<u16>) {
+/// Which pixels a view covers.
+fn picture(asset: &AssetFile, yaw: f64, distance: f64, splat: u16) -> Vec<bool> {
     let orbit = Orbit {
         yaw: Turns::from_bits((yaw / 360.0 * 2f64.powi(32)) as u32),
         pitch: Turns::from_bits(1 << 27),
@@ -87,7 +104,7 @@ fn picture(asset: &AssetFile, yaw: f64, distance: f64, splat: u16) -> (Vec<u16>,
         ..Quality::default()
     };
     let frame = draw_frame(&asset.grid(), &camera, &light, &quality, 1);
-    (frame.colour, frame.depth)
+    frame.depth.iter().map(|&depth| depth > 0).collect()
 }
 
 fn check_thin(mesh: &Mesh, rho: u8, level: u8) {
@@ -106,10 +123,15 @@ fn check_thin(mesh: &Mesh, rho: u8, level: u8) {
             assert!(sorted(own) == sorted(want), "rho {rho}, depth {depth}");
         }
         for (yaw, distance, splat) in [(20.0, 3.5, 0), (130.0, 3.0, 1), (250.0, 9.0, 6)] {
+            // Next to the silhouette a filtered normal may face the other way.
             let own = picture(&cut, yaw, distance, splat);
+            let want = picture(&coarse, yaw, distance, splat);
+            let differing = own.iter().zip(&want).filter(|(own, want)| own != want);
+            let covered = want.iter().filter(|&&is_covered| is_covered).count();
+            let differing = differing.count();
             assert!(
-                own == picture(&coarse, yaw, distance, splat),
-                "rho {rho}, depth {depth}, yaw {yaw}"
+                20 * differing <= covered,
+                "rho {rho}, depth {depth}, yaw {yaw}: {differing} of {covered} pixels"
             );
         }
     }

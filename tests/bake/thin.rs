@@ -10,7 +10,9 @@ use rhogrid::import::procedural::{demo, shapes};
 use rhogrid_core::asset::{Grid, Shell};
 
 use super::cells::{cells, drawn_places, places};
-use super::twin::{Face, LEVELS, TIE, TOUCH, bounds, check_sample, faces, nearest, torus, touches};
+use super::twin::{
+    Face, LEVELS, TIE, TOUCH, bounds, check_material, check_sample, faces, nearest, torus, touches,
+};
 use super::{Random, baked, moved, options, plate, slivers, soup, sphere_of_points, thin};
 
 type Place = [u32; 3];
@@ -115,7 +117,10 @@ fn check(name: &str, mesh: &Mesh, rho: u8, level: u8) -> (usize, usize) {
             );
         }
         for cell in own {
-            check_sample(&faces, cell.place, axis, cell.attribute);
+            match cell.record.is_empty() {
+                true => check_sample(&faces, cell.place, axis, cell.attribute),
+                false => check_material(&faces, cell.place, axis, cell.attribute),
+            }
         }
     }
     (open, all)

@@ -30,9 +30,10 @@ pub const fn flags_shift(rho: u8) -> u32 {
 /// Aperture that stands for "normals in every direction".
 pub const APERTURE_ALL: u8 = 15;
 
-/// Sine of the largest angle between a cell's own normal and any surface
-/// normal in it, by four-bit aperture: aperture a < 15 covers angles up to
-/// 6 (a + 1) degrees. Q1.15, rounded up. Aperture 15 covers every angle.
+/// Sine of the largest angle between a cell's own normal and that of any
+/// sample that may be drawn below it, by four-bit aperture: aperture a < 15
+/// covers angles up to 6 (a + 1) degrees. Q1.15, rounded up. Aperture 15 covers
+/// every angle.
 pub const APERTURE_SINE: [u16; 15] = [
     3426, 6813, 10126, 13328, 16384, 19261, 21927, 24352, 26510, 28378, 29936, 31165, 32052, 32589,
     32768,
