@@ -5,6 +5,7 @@ mod cells;
 mod cones;
 mod counts;
 mod extremes;
+mod filter;
 mod prefix;
 mod thin;
 mod twin;
