@@ -25,7 +25,7 @@ use super::touched::{Touched, TouchedLevel};
 /// point's serves better: two faces of equal shares fall below it from 91
 /// degrees on. At three pixels a splat 0.3 and 0.5 lose PSNR against the nearest
 /// point's on fracttree and 0.3 on cow, 0.85 gains less on bunny, buddha and
-/// lucy; 2026-11.
+/// lucy.
 const SHORTEST_MEAN: f64 = 0.7;
 
 /// What is below a cell.
