@@ -227,8 +227,9 @@ fn draw_grid(
     let output = output_at(args, index);
     let camera = core_camera(&view, &grid, &cube);
     let quality = core_quality(&args.quality);
-    if args.verbose {
-        eprint!("{}", Plan::new(&grid, &camera, &quality));
+    if args.verbose && !args.json {
+        let plan = Plan::new(&grid, &camera, &quality).to_string();
+        super::say(format_args!("{}", plan.trim_end()))?;
     }
     let frame = draw_frame(
         &grid,

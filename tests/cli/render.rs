@@ -235,7 +235,22 @@ fn extreme_views_are_drawn() {
 fn verbose_text_says_more() {
     let folder = Folder::new();
     let text = folder.done(&format!("render cube.obj -o a.png {SMALL} --compare -v"));
-    for part in ["a.png", "48x64", "nodes", "visited", "holes"] {
+    let plan = [
+        "draws cells of depth",
+        "sides",
+        "facing",
+        "one material",
+        "stops from",
+    ];
+    let work = [
+        "a.png",
+        "48x64",
+        "nodes",
+        "facing tests",
+        "side tests",
+        "holes",
+    ];
+    for part in plan.into_iter().chain(work) {
         assert!(text.contains(part), "no {part} in {text}");
     }
 }
