@@ -76,6 +76,21 @@ impl<const RHO: u8> Mask<RHO> {
         })
     }
 
+    /// The same of a record that is one word, flags above: tri-grids' are.
+    #[inline(always)]
+    pub fn of_word(word: u32) -> Option<Self> {
+        (RHO == 3).then_some(Self([word, 0, 0, 0]))
+    }
+
+    /// A record as one word, if it is one.
+    #[inline(always)]
+    pub fn word(record: &[u16]) -> Option<u32> {
+        match (RHO, record) {
+            (3, &[low, high]) => Some(u32::from(low) | u32::from(high) << 16),
+            _ => None,
+        }
+    }
+
     /// The cells that are not in another mask.
     #[inline(always)]
     pub fn without(self, other: Self) -> Self {

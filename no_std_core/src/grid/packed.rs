@@ -152,7 +152,8 @@ fn dab<const COLUMNS: usize, const ROWS: usize>(place: u32, attribute: u16, wind
 pub(super) struct Block {
     /// Its centre as a word, with the brush's offset.
     pub place: u32,
-    /// Which record of the level below is its own.
+    /// Its drawn record where that is one word, as [`Mask::word`] has it, else
+    /// the record's index in the level below.
     pub record: u32,
     /// Index of its first child there.
     pub first: u32,
@@ -165,6 +166,18 @@ impl Block {
         record: 0,
         first: 0,
     };
+
+    /// Its drawn record.
+    #[inline(always)]
+    fn drawn<const RHO: u8>(&self, level: &Level<'_>) -> (Mask<RHO>, Flags) {
+        if let Some(word) = Mask::<RHO>::of_word(self.record) {
+            return (word, Flags::from_last(RHO, (self.record >> 16) as u16));
+        }
+        let first = self.record as usize * halves(RHO);
+        let record = level.drawn.get(first..first + halves(RHO)).unwrap_or(&[]);
+        let last = record.last().copied().unwrap_or(0);
+        (Mask::of(record), Flags::from_last(RHO, last))
+    }
 }
 
 /// Draws the children of blocks; gives how many they are. `level` is the
@@ -179,12 +192,9 @@ pub(super) fn draw_blocks<const RHO: u8, const COLUMNS: usize, const ROWS: usize
 ) -> u32 {
     let mut drawn = 0;
     for block in blocks {
-        let first = block.record as usize * halves(RHO);
-        let record = level.drawn.get(first..first + halves(RHO)).unwrap_or(&[]);
         let attributes = level.attributes.get(block.first as usize..).unwrap_or(&[]);
-        let mask = Mask::<RHO>::of(record);
-        let last = record.last().copied().unwrap_or(0);
-        drawn += if Flags::from_last(RHO, last).is_sheet() {
+        let (mask, flags) = block.drawn::<RHO>(level);
+        drawn += if flags.is_sheet() {
             draw_sheet::<RHO, COLUMNS, ROWS>(block, mask, attributes, subcells, normals, window)
         } else {
             let as_it_is = |attribute| attribute;

@@ -64,7 +64,7 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
         let start = start.wrapping_add(affine.brush.offset());
         let (queue, stats) = (&mut *output.queue, &mut *output.stats);
         let blocks = match (SPAN, subtree.facing) {
-            (1, _) => block(cell, start, queue),
+            (1, _) => block::<RHO>(subtree, start, queue),
             (_, Facing::Toward) => self.blocks::<RHO, false>(subtree, start, queue, stats),
             _ => self.blocks::<RHO, true>(subtree, start, queue, stats),
         };
@@ -114,7 +114,8 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
             {
                 *block = Block {
                     place,
-                    record: (cell.first_child + index) as u32,
+                    record: Mask::<RHO>::word(own.drawn)
+                        .unwrap_or((cell.first_child + index) as u32),
                     first,
                 };
                 kept += 1;
@@ -141,13 +142,18 @@ pub(super) struct Subtree<'a> {
 
 /// The cell itself, whose children are drawn.
 #[inline(always)]
-fn block<'q>(cell: &Cell, start: u32, queue: &'q mut [Block]) -> &'q [Block] {
+fn block<'q, const RHO: u8>(
+    subtree: &Subtree<'_>,
+    start: u32,
+    queue: &'q mut [Block],
+) -> &'q [Block] {
+    let Subtree { cell, record, .. } = subtree;
     let Some((own, _)) = queue.split_first_chunk_mut::<1>() else {
         return &[];
     };
     *own = [Block {
         place: start,
-        record: cell.index as u32,
+        record: Mask::<RHO>::word(record.drawn).unwrap_or(cell.index as u32),
         first: cell.first_child as u32,
     }];
     own
