@@ -9,6 +9,7 @@
 //! more of the strip: what runs over on the right side of a row ends at column
 //! 254 and what runs over on the left side of the next one begins at column
 //! 241, so that the pixels right next to the strip, 240 and 255, are their own.
+//! [`AROUND`] the strip pixels are as in any other strip that holds them.
 
 use core::hint::black_box;
 use core::ops::Range;
@@ -18,11 +19,13 @@ use crate::target::Rect;
 /// Words from row to row.
 pub(crate) const PITCH: usize = 256;
 /// Rows above and below the strip.
-const GUARD: usize = 16;
+const GUARD: usize = 17;
 /// Columns of the widest strip.
 pub(crate) const STRIP_COLUMNS: u16 = 240;
-/// How far from the strip the centre of a window may lie, pixels.
-pub(crate) const REACH: i32 = 8;
+/// Columns and rows on either side of a strip that count: repair looks at them.
+pub(crate) const AROUND: [i32; 2] = [1, 2];
+/// How far from the strip the centre of a window may lie, columns and rows.
+pub(crate) const REACH: [i32; 2] = [8, 9];
 /// Words of a window: 16 rows, and one more into which squares reach.
 pub(crate) const WINDOW: usize = 17 * PITCH;
 /// The window's pixel that its centre falls on, both ways.
@@ -138,11 +141,12 @@ impl<'a> Canvas<'a> {
         self.words.get_mut(start..start + columns)
     }
 
-    /// The neighbourhoods of pixels of a row of the strip, from the first one's
-    /// upper left neighbour to the last one's lower right.
+    /// The neighbourhoods of pixels of a row of the strip: five rows, from the
+    /// second above the first one's left neighbour to the second below the
+    /// last one's right neighbour.
     pub fn neighbourhoods(&self, columns: &Range<u16>, row: u16) -> Option<&[u32]> {
-        let above = usize::from(row - self.strip.top) + GUARD - 1;
-        let start = above * PITCH + usize::from(columns.start - self.strip.left) - 1;
-        self.words.get(start..start + 2 * PITCH + columns.len() + 2)
+        let first = usize::from(row - self.strip.top) + GUARD - 2;
+        let start = first * PITCH + usize::from(columns.start - self.strip.left) - 1;
+        self.words.get(start..start + 4 * PITCH + columns.len() + 2)
     }
 }

@@ -5,7 +5,10 @@
 //! behind. Such a *hole* is a pixel between two others, beside, above and below
 //! or across, that are both nearer than it by a few cells. Of several such
 //! pairs the one counts whose deeper pixel is nearest; the hole takes its mean
-//! colour. A gap of one pixel that is really there is closed, too.
+//! colour. Where pixels are missed side by side, half of a hole's eight
+//! neighbours are nearer, one of them to the left or above, though no two are
+//! opposite: then it lies between the one above and the second one below, or
+//! the other way round. A gap of one pixel that is really there is closed, too.
 
 use crate::canvas::{Canvas, PITCH};
 use crate::shade::Shader;
@@ -21,12 +24,11 @@ pub(crate) struct Gap {
     pub shift: u32,
 }
 
-/// A pixel and its eight neighbours on the canvas: three rows of three, from
-/// the one above to the left on.
-type Neighbourhood = [u32; 2 * PITCH + 3];
+/// A pixel and what lies around it on the canvas: five rows of three.
+type Neighbourhood = [u32; 4 * PITCH + 3];
 
 /// Where the pixel itself is.
-const OWN: usize = PITCH + 1;
+const OWN: usize = 2 * PITCH + 1;
 
 /// Writes a strip's colours, and depths where they are asked for.
 pub(crate) fn resolve(
@@ -79,7 +81,7 @@ fn row_of(words: &[u32], gap: Gap, colours: &mut [u16], colour_of: impl Fn(u32) 
     let is_empty =
         |([a, b, c, d], [e, f, g, h]): (&[u32; 4], &[u32; 4])| a | b | c | d | e | f | g | h == 0;
     let line = |start: usize| words.get(start..start + colours.len() + 2).unwrap_or(&[]);
-    let (above, own) = (line(0), line(PITCH));
+    let (above, own) = (line(PITCH), line(2 * PITCH));
     let fours = above.as_chunks().0.iter().zip(own.as_chunks().0);
     let ahead = fours.take_while(|&four| is_empty(four)).count();
     let fours = above.as_rchunks().1.iter().zip(own.as_rchunks().1);
@@ -104,7 +106,7 @@ fn row_of(words: &[u32], gap: Gap, colours: &mut [u16], colour_of: impl Fn(u32) 
 fn pixel(around: &Neighbourhood, gap: Gap, colour_of: &impl Fn(u32) -> u16) -> u16 {
     let own = around[OWN];
     let least = gap.least(own);
-    let ahead = [around[OWN - 1], around[0], around[1], around[2]];
+    let ahead = [1, PITCH + 1, PITCH, PITCH - 1].map(|before| around[OWN - before]);
     if ahead.into_iter().all(|word| word <= least) {
         return colour_of(own);
     }
@@ -147,12 +149,13 @@ impl Gap {
     }
 }
 
-/// The pair of opposite neighbours that closes a hole, if it is one: both are
-/// nearer by the gap. Of equally deep pairs the first counts.
+/// The two pixels that close a hole, if it is one: see the module. Of equally
+/// deep pairs the first counts.
 #[inline(never)]
 fn hole(around: &Neighbourhood, gap: Gap) -> Option<[u32; 2]> {
-    let mut closing = None;
-    let mut nearest = gap.limit(around[OWN]);
+    let limit = gap.limit(around[OWN]);
+    let (mut closing, mut nearest) = (None, limit);
+    let (mut before, mut behind) = (0, 0);
     for offset in [1, PITCH, PITCH + 1, PITCH - 1] {
         let pair = [around[OWN - offset], around[OWN + offset]];
         let deeper = pair[0].min(pair[1]);
@@ -160,8 +163,18 @@ fn hole(around: &Neighbourhood, gap: Gap) -> Option<[u32; 2]> {
             nearest = deeper;
             closing = Some(pair);
         }
+        before += u32::from(pair[0] > limit);
+        behind += u32::from(pair[1] > limit);
     }
-    closing
+    if closing.is_some() || before == 0 || before + behind < 4 {
+        return closing;
+    }
+    let long = [
+        [around[OWN - PITCH], around[OWN + 2 * PITCH]],
+        [around[OWN - 2 * PITCH], around[OWN + PITCH]],
+    ];
+    long.into_iter()
+        .find(|&[above, below]| above > limit && below > limit)
 }
 
 /// The mean of two RGB565 colours, each channel rounded down.

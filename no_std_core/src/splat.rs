@@ -7,7 +7,7 @@
 //! fills gaps between cores but does not cover a neighbour's core, which
 //! knows the surface there better.
 
-use crate::canvas::Canvas;
+use crate::canvas::{AROUND, Canvas};
 use crate::numbers::{SCREEN_BITS, SCREEN_ONE};
 
 /// Size of the splats of one block of cells.
@@ -45,12 +45,11 @@ fn span(centre: i32, half: i32, first: i32, end: i32) -> (i32, i32) {
 #[inline(never)]
 pub(crate) fn draw(canvas: &mut Canvas<'_>, splat: &Splat, extent: &Extent) {
     let strip = canvas.strip;
-    // One pixel around the strip is drawn, too: repair looks at it.
-    let first = |bound: u16| i32::from(bound) - 1;
-    let end = |bound: u16| i32::from(bound) + 1;
+    let within =
+        |first: u16, end: u16, around: i32| [i32::from(first) - around, i32::from(end) + around];
     let [half_x, half_y] = extent.half;
-    let columns = [first(strip.left), end(strip.right)];
-    let rows = [first(strip.top), end(strip.bottom)];
+    let columns = within(strip.left, strip.right, AROUND[0]);
+    let rows = within(strip.top, strip.bottom, AROUND[1]);
     let (left, right) = span(splat.x, half_x, columns[0], columns[1]);
     let (top, bottom) = span(splat.y, half_y, rows[0], rows[1]);
     if left >= right || top >= bottom {

@@ -21,7 +21,7 @@ use crate::reciprocal::Reciprocal;
 /// which the subtree's own centre lies, rounded to sixteenths: from its left
 /// side on, 8 to 9. With at most 10/32 for the rounding of two levels,
 /// 9 + 6 5/8 + 10/32 stays below 16. A subtree beyond [`crate::canvas::REACH`]
-/// of the strip, 8 pixels, stays clear of the pixel next to the strip.
+/// of the strip, 8 columns or 9 rows, stays clear of what counts around it.
 const REACH: i32 = (6 << SCREEN_BITS) + (5 << SCREEN_BITS) / 8;
 /// The same where points are two pixels large: half a pixel back, and one
 /// more ahead.

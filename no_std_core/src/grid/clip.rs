@@ -7,6 +7,7 @@
 //! edges, the same for all cells of a depth.
 
 use super::tables::{Point, Tables};
+use crate::canvas::AROUND;
 use crate::numbers::SCREEN_BITS;
 use crate::projection::Projection;
 use crate::target::Rect;
@@ -43,9 +44,6 @@ pub(super) struct Clip<const LEVELS: usize> {
     near: i32,
 }
 
-/// Pixels around the strip that are drawn, too.
-const MARGIN: i32 = 1;
-
 impl<const LEVELS: usize> Clip<LEVELS> {
     pub fn new<const CELLS: usize>(
         projection: &Projection,
@@ -54,6 +52,7 @@ impl<const LEVELS: usize> Clip<LEVELS> {
         strip: Rect,
     ) -> Self {
         let scale = projection.screen_scale + SCREEN_BITS;
+        let [columns, rows] = AROUND;
         let planes = (0..=30).contains(&scale).then(|| {
             let outer = 1i64 << scale;
             let [middle_x, middle_y] = projection.middle.map(|middle| middle.to_bits());
@@ -62,10 +61,10 @@ impl<const LEVELS: usize> Clip<LEVELS> {
                 bound: sign * i64::from(((i32::from(side) + margin) << SCREEN_BITS) - middle),
             };
             [
-                plane(-1, strip.left, -MARGIN, middle_x),
-                plane(1, strip.right, MARGIN, middle_x),
-                plane(-1, strip.top, -MARGIN, middle_y),
-                plane(1, strip.bottom, MARGIN, middle_y),
+                plane(-1, strip.left, -columns, middle_x),
+                plane(1, strip.right, columns, middle_x),
+                plane(-1, strip.top, -rows, middle_y),
+                plane(1, strip.bottom, rows, middle_y),
             ]
         });
         let mut clip = Self {

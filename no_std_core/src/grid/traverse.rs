@@ -295,17 +295,19 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
         }
     }
 
-    /// Whether a subtree centred at a place may touch the strip or a pixel
-    /// next to it.
+    /// Whether a subtree centred at a place may touch the strip or what counts
+    /// around it.
     #[inline(always)]
     pub(super) fn is_near_strip(&self, place: &Place, output: &Output<'_, '_>) -> bool {
         use crate::canvas::REACH;
         use crate::numbers::SCREEN_BITS;
         let strip = output.canvas.strip;
-        let within = |at: i32, low: u16, high: u16| {
+        let within = |at: i32, low: u16, high: u16, reach: i32| {
             let pixel = at >> SCREEN_BITS;
-            pixel >= i32::from(low) - REACH && pixel < i32::from(high) + REACH
+            pixel >= i32::from(low) - reach && pixel < i32::from(high) + reach
         };
-        within(place.x, strip.left, strip.right) && within(place.y, strip.top, strip.bottom)
+        let [columns, rows] = REACH;
+        within(place.x, strip.left, strip.right, columns)
+            && within(place.y, strip.top, strip.bottom, rows)
     }
 }

@@ -30,6 +30,18 @@ fn shown(words: &[Vec<u32>], x: usize, y: usize, gap: Gap) -> Vec<u32> {
             best = Some(pair);
         }
     }
+    let beside = [-1i32, 0, 1].map(|dy| [-1i32, 0, 1].map(|dx| [dx, dy]));
+    let nearer = beside.into_iter().flatten().filter(|&[dx, dy]| {
+        let word = at((x as i32 + dx) as usize, (y as i32 + dy) as usize);
+        [dx, dy] != [0, 0] && word > needed(own)
+    });
+    let nearer: Vec<[i32; 2]> = nearer.collect();
+    let is_before = |&[dx, dy]: &[i32; 2]| dy < 0 || dy == 0 && dx < 0;
+    if best.is_none() && nearer.len() >= 4 && nearer.iter().any(is_before) {
+        let pairs = [[at(x, y - 1), at(x, y + 2)], [at(x, y - 2), at(x, y + 1)]];
+        let closes = |pair: &[u64; 2]| pair.iter().all(|&word| word > needed(own));
+        best = pairs.into_iter().find(closes);
+    }
     match best {
         Some(pair) => pair.map(|word| word as u32).to_vec(),
         None => std::vec![own as u32],
@@ -63,8 +75,8 @@ fn pixels_are_those_of_the_definition() {
         };
         let mut memory = std::vec![0; canvas_len(height)];
         let mut canvas = Canvas::new(&mut memory, strip);
-        // One pixel around the strip, too.
-        let mut words = std::vec![std::vec![0; usize::from(width) + 2]; usize::from(height) + 2];
+        // What counts around the strip, too.
+        let mut words = std::vec![std::vec![0; usize::from(width) + 2]; usize::from(height) + 4];
         for (y, row) in words.iter_mut().enumerate() {
             for (x, word) in row.iter_mut().enumerate() {
                 if rng.f64() >= share {
@@ -74,10 +86,10 @@ fn pixels_are_those_of_the_definition() {
                 let depth = 1 + rng.u16(..most);
                 let attribute = rng.u16(..);
                 *word = u32::from(depth) << 16 | u32::from(attribute);
-                let pixel = |at: usize| ((at as i32 - 1) << 12) + (1 << 11);
+                let pixel = |at: usize, around: i32| ((at as i32 - around) << 12) + (1 << 11);
                 let splat = Splat {
-                    x: pixel(x),
-                    y: pixel(y),
+                    x: pixel(x, 1),
+                    y: pixel(y, 2),
                     depth,
                     attribute,
                 };
@@ -97,7 +109,7 @@ fn pixels_are_those_of_the_definition() {
         resolve(&canvas, Some(gap), &shader, &mut target.picture);
         for index in 0..pixels {
             let (x, y) = (index % usize::from(width), index / usize::from(width));
-            let want = shown(&words, x + 1, y + 1, gap);
+            let want = shown(&words, x + 1, y + 2, gap);
             closed += usize::from(want.len() == 2);
             let colours: Vec<u16> = want.iter().map(|&word| shader.colour_of(word)).collect();
             let channel = |shift: u32, bits: u16| {

@@ -44,7 +44,7 @@ impl Board {
         let row = |row| {
             let words = canvas.neighbourhoods(&(strip.left..strip.right), row);
             let line = words.expect("the canvas holds the strip").iter();
-            let line = line.skip(PITCH + 1).take(strip.width());
+            let line = line.skip(2 * PITCH + 1).take(strip.width());
             line.copied().collect::<Vec<u32>>()
         };
         rows.flat_map(row).collect()
