@@ -27,6 +27,10 @@ const REACH: i32 = (6 << SCREEN_BITS) + (5 << SCREEN_BITS) / 8;
 /// more ahead.
 const REACH_TWO: i32 = (6 << SCREEN_BITS) + (3 << SCREEN_BITS) / 16;
 
+/// How many cells deeper samples that face away are drawn: as many as make a
+/// [hole](crate::resolve) of what shows of them between nearer ones.
+const FAR_SIDE_CELLS: u32 = 2;
+
 /// What a subtree's depths may be off by rounding, at most one for each step
 /// and chunk.
 pub(super) const DEPTH_ROUNDING: i32 = 16;
@@ -57,6 +61,12 @@ impl Steps {
             y: reach(|step| step.y),
             depth: reach(|step| step.depth) + DEPTH_ROUNDING,
         }
+    }
+
+    /// How much depth changes across a cell.
+    #[inline(always)]
+    fn across(&self) -> u32 {
+        self.0.iter().map(|step| step.depth.unsigned_abs()).sum()
     }
 
     #[inline(always)]
@@ -93,6 +103,8 @@ pub(super) struct Affine {
     pub blocks: Subcells,
     pub brush: Brush,
     pub reach: Reach,
+    /// How much deeper than they are samples that face away are drawn.
+    pub far_side: u32,
 }
 
 impl Affine {
@@ -106,6 +118,7 @@ impl Affine {
             y: 0,
             depth: 0,
         },
+        far_side: 0,
     };
 }
 
@@ -131,6 +144,8 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
         if !affine.reach.fits_window(affine.brush) {
             return false;
         }
+        affine.far_side = FAR_SIDE_CELLS * steps.across();
+        affine.reach.depth += affine.far_side as i32;
         affine.leaves.fill::<RHO>(&steps.0);
         if SPAN > 1 {
             affine.blocks.fill::<RHO>(&steps.times(rho).0);

@@ -234,14 +234,10 @@ impl Normals {
         }
     }
 
-    /// The attribute of a sheet's sample as it is seen.
+    /// Whether a sample faces away.
     #[inline(always)]
-    pub fn turned(&self, attribute: u16) -> u16 {
-        if self.along(attribute) > 0 {
-            attribute ^ OPPOSITE
-        } else {
-            attribute
-        }
+    pub fn faces_away(&self, attribute: u16) -> bool {
+        self.along(attribute) > 0
     }
 }
 

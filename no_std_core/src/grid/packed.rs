@@ -12,11 +12,13 @@
 //! its field. Shifted right by 20 and masked, a place is the pixel's index in
 //! the window; shifted left by 16 it is what the canvas compares.
 
+use super::affine::Affine;
 use super::facing::Normals;
 use super::lists::{CHUNK_CELLS, COUNTS, LISTS, MAX_CHUNKS, Mask, chunk_rows, chunks};
 use crate::asset::Level;
 use crate::asset::node::{Flags, halves};
 use crate::canvas::{PITCH, WINDOW_CENTRE, Window};
+use crate::normal::OPPOSITE;
 
 /// A position on the screen, or a step of one: Q20.12 pixels and depth.
 #[derive(Clone, Copy, Debug)]
@@ -180,13 +182,17 @@ impl Block {
     }
 }
 
+/// Least aperture, of 84 degrees, of blocks of which single samples are tested
+/// for facing away: narrower ones are mostly skipped or seen as a whole.
+const BOTH_WAYS: u8 = 13;
+
 /// Draws the children of blocks; gives how many they are. `level` is the
 /// children's.
 #[inline(never)]
 pub(super) fn draw_blocks<const RHO: u8, const COLUMNS: usize, const ROWS: usize>(
     blocks: &[Block],
     level: &Level<'_>,
-    subcells: &Subcells,
+    affine: &Affine,
     normals: &Normals,
     window: &mut Window,
 ) -> u32 {
@@ -194,24 +200,32 @@ pub(super) fn draw_blocks<const RHO: u8, const COLUMNS: usize, const ROWS: usize
     for block in blocks {
         let attributes = level.attributes.get(block.first as usize..).unwrap_or(&[]);
         let (mask, flags) = block.drawn::<RHO>(level);
-        drawn += if flags.is_sheet() {
-            draw_sheet::<RHO, COLUMNS, ROWS>(block, mask, attributes, subcells, normals, window)
+        drawn += if flags.aperture >= BOTH_WAYS {
+            draw_both_ways::<RHO, COLUMNS, ROWS>(
+                block,
+                mask,
+                attributes,
+                affine,
+                (normals, flags.is_sheet()),
+                window,
+            )
         } else {
-            let as_it_is = |attribute| attribute;
-            draw::<RHO, COLUMNS, ROWS>(block, mask, attributes, subcells, as_it_is, window)
+            let as_it_is = |attribute| (attribute, 0);
+            draw::<RHO, COLUMNS, ROWS>(block, mask, attributes, &affine.leaves, as_it_is, window)
         };
     }
     drawn
 }
 
-/// Draws the children of a block. `seen` tells how a sample shows.
+/// Draws the children of a block. `seen` tells how a sample shows, and how
+/// much deeper.
 #[inline(always)]
 fn draw<const RHO: u8, const COLUMNS: usize, const ROWS: usize>(
     block: &Block,
     drawn: Mask<RHO>,
     attributes: &[u16],
     subcells: &Subcells,
-    seen: impl Fn(u16) -> u16,
+    seen: impl Fn(u16) -> (u16, u32),
     window: &mut Window,
 ) -> u32 {
     let mut rest = attributes;
@@ -226,22 +240,30 @@ fn draw<const RHO: u8, const COLUMNS: usize, const ROWS: usize>(
         for &attribute in own {
             let place = pivot.wrapping_add(subcells.cells[(list & 15) as usize]);
             list >>= 4;
-            dab::<COLUMNS, ROWS>(place, seen(attribute), window);
+            let (attribute, deeper) = seen(attribute);
+            dab::<COLUMNS, ROWS>(place.wrapping_sub(deeper), attribute, window);
         }
     }
     (attributes.len() - rest.len()) as u32
 }
 
-/// Draws a sheet, whose samples show the side that is seen.
+/// Draws a block whose samples may face either way. Those that face away lie
+/// deeper: where a wall has samples of its own on either side, the far side's
+/// do not show between the near side's. Of a sheet they show the side that is
+/// seen.
 #[inline(never)]
-fn draw_sheet<const RHO: u8, const COLUMNS: usize, const ROWS: usize>(
+fn draw_both_ways<const RHO: u8, const COLUMNS: usize, const ROWS: usize>(
     block: &Block,
     drawn: Mask<RHO>,
     attributes: &[u16],
-    subcells: &Subcells,
-    normals: &Normals,
+    affine: &Affine,
+    (normals, is_sheet): (&Normals, bool),
     window: &mut Window,
 ) -> u32 {
-    let turned = |attribute| normals.turned(attribute);
-    draw::<RHO, COLUMNS, ROWS>(block, drawn, attributes, subcells, turned, window)
+    let flip = if is_sheet { OPPOSITE } else { 0 };
+    let seen = |attribute| match normals.faces_away(attribute) {
+        true => (attribute ^ flip, affine.far_side),
+        false => (attribute, 0),
+    };
+    draw::<RHO, COLUMNS, ROWS>(block, drawn, attributes, &affine.leaves, seen, window)
 }

@@ -80,7 +80,7 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
             Brush::Wide => draw_blocks::<RHO, 2, 1>,
             Brush::Square => draw_blocks::<RHO, 2, 2>,
         };
-        output.stats.samples_drawn += draw(blocks, level, &affine.leaves, subtree.normals, window);
+        output.stats.samples_drawn += draw(blocks, level, affine, subtree.normals, window);
     }
 
     /// The children of the cell; without those that face away, if any may.
