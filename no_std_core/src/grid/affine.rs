@@ -63,10 +63,14 @@ impl Steps {
         }
     }
 
-    /// How much depth changes across a cell.
+    /// How much depth changes along an edge that leads to the eye, or up to a
+    /// quarter more: the longest component and half of the others.
     #[inline(always)]
     fn across(&self) -> u32 {
-        self.0.iter().map(|step| step.depth.unsigned_abs()).sum()
+        let depths = self.0.map(|step| step.depth.unsigned_abs());
+        let [a, b, c] = depths;
+        let longest = a.max(b).max(c);
+        longest + (a + b + c - longest) / 2
     }
 
     #[inline(always)]
@@ -103,7 +107,8 @@ pub(super) struct Affine {
     pub blocks: Subcells,
     pub brush: Brush,
     pub reach: Reach,
-    /// How much deeper than they are samples that face away are drawn.
+    /// How much deeper than they are samples that face away are drawn; not at
+    /// all where every surface is a sheet.
     pub far_side: u32,
 }
 
@@ -144,8 +149,10 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
         if !affine.reach.fits_window(affine.brush) {
             return false;
         }
-        affine.far_side = FAR_SIDE_CELLS * steps.across();
-        affine.reach.depth += affine.far_side as i32;
+        if self.plan.faces {
+            affine.far_side = FAR_SIDE_CELLS * steps.across();
+            affine.reach.depth += affine.far_side as i32;
+        }
         affine.leaves.fill::<RHO>(&steps.0);
         if SPAN > 1 {
             affine.blocks.fill::<RHO>(&steps.times(rho).0);
