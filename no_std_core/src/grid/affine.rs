@@ -5,8 +5,8 @@
 //! all subtrees of a cell that lies there: see `plan.rs` for what either
 //! costs in pixels.
 
-use super::facing::Normals;
 use super::footprint::Place;
+use super::normals::Normals;
 use super::packed::{Brush, Step, Subcells};
 use super::tables::Point;
 use super::traverse::{Cell, Frame};

@@ -11,6 +11,7 @@ mod facing;
 mod footprint;
 mod leaves;
 mod lists;
+mod normals;
 mod packed;
 mod siblings;
 mod subtree;

@@ -13,8 +13,8 @@
 //! the window; shifted left by 16 it is what the canvas compares.
 
 use super::affine::Affine;
-use super::facing::Normals;
 use super::lists::{CHUNK_CELLS, COUNTS, LISTS, MAX_CHUNKS, Mask, chunk_rows, chunks};
+use super::normals::Normals;
 use crate::asset::Level;
 use crate::asset::node::{Flags, halves};
 use crate::canvas::{PITCH, WINDOW_CENTRE, Window};

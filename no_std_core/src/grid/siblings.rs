@@ -4,8 +4,9 @@
 //! around its parent, so that tables are filled once for all of them.
 
 use super::affine::Affine;
-use super::facing::{Around, Facing, Normals};
+use super::facing::Facing;
 use super::footprint::Place;
+use super::normals::{Around, Normals};
 use super::subtree::Subtree;
 use super::traverse::{Cell, Frame, Output, Record};
 use crate::asset::node::Flags;

@@ -1,9 +1,10 @@
 //! Packed subtrees: from an exactly projected cell down to points.
 
 use super::affine::Affine;
-use super::facing::{Facing, Normals};
+use super::facing::Facing;
 use super::footprint::Place;
 use super::lists::{self, COUNTS, LISTS, Mask};
+use super::normals::Normals;
 use super::packed::{Block, Brush, Subcells, draw_blocks};
 use super::traverse::{Cell, Frame, Output, Record, records};
 use crate::asset::node::Flags;

@@ -8,9 +8,10 @@
 //! ([`super::packed`]) where that is exact enough.
 
 use super::clip::{Clip, Side};
-use super::facing::{EyeSpace, Normals};
+use super::facing::EyeSpace;
 use super::footprint::{Place, is_beside, near_limit};
 use super::lists::{self, COUNTS, LISTS, Mask};
+use super::normals::Normals;
 use super::packed::Block;
 use super::tables::{Point, Tables};
 use crate::asset::node::{Flags, halves};

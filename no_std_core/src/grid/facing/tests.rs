@@ -1,5 +1,6 @@
 use super::*;
 use crate::asset::node::{APERTURE_COSINE, APERTURE_SINE};
+use crate::grid::normals::{Around, Normals};
 use crate::normal::CODES;
 use crate::testing::{Rng, direction, dot};
 
