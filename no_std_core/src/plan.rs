@@ -22,7 +22,7 @@ const PACKED_LEVELS: usize = 2;
 /// larger one is a splat of its own size.
 const BRUSH_PX: i64 = 2 << 16;
 /// Cells up to this edge are one pixel, pixels Q16.
-const POINT_PX: i64 = 19 << 12;
+const POINT_PX: i64 = 18 << 12;
 /// Cells up to this edge are at most two pixels side by side, pixels Q16.
 const WIDE_PX: i64 = 24 << 12;
 /// How much nearer a hole's neighbours are, in cells.
