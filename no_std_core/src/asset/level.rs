@@ -20,6 +20,8 @@ pub struct Level<'a> {
     pub drawn: &'a [u16],
     /// Attributes of the cells of this depth n: material << 13 | normal code.
     pub attributes: &'a [u16],
+    /// `nodes` and `drawn` of tri-grids, whose records are words; else empty.
+    pub(crate) words: [&'a [u32]; 2],
 }
 
 /// What a level's layout depends on besides the levels above.
@@ -38,6 +40,7 @@ impl<'a> Level<'a> {
         nodes: &[],
         drawn: &[],
         attributes: &[],
+        words: [&[]; 2],
     };
 
     /// Number of cells.
@@ -90,6 +93,13 @@ impl<'a> Level<'a> {
             nodes,
             drawn,
             attributes,
+            words: match shape.rho {
+                3 => [
+                    bytemuck::try_cast_slice(nodes).ok()?,
+                    bytemuck::try_cast_slice(drawn).ok()?,
+                ],
+                _ => [&[]; 2],
+            },
         })
     }
 

@@ -27,6 +27,11 @@ pub const fn flags_shift(rho: u8) -> u32 {
     }
 }
 
+/// The five flag bits of a record's last word.
+pub const fn flag_bits(rho: u8, last: u16) -> u16 {
+    last >> flags_shift(rho) & 31
+}
+
 /// Aperture that stands for "normals in every direction".
 pub const APERTURE_ALL: u8 = 15;
 
@@ -58,7 +63,11 @@ pub struct Flags {
 impl Flags {
     /// The flags in a record's last word.
     pub const fn from_last(rho: u8, last: u16) -> Self {
-        let bits = last >> flags_shift(rho);
+        Self::from_bits(flag_bits(rho, last))
+    }
+
+    /// The flags of their five bits, as [`flag_bits`] has them.
+    pub const fn from_bits(bits: u16) -> Self {
         Self {
             aperture: (bits & 15) as u8,
             two_sided: bits & 16 != 0,
@@ -73,7 +82,12 @@ impl Flags {
 
     /// The flags as bits of a record's last word.
     pub const fn to_last(self, rho: u8) -> u16 {
-        ((self.aperture as u16 & 15) | (self.two_sided as u16) << 4) << flags_shift(rho)
+        self.bits() << flags_shift(rho)
+    }
+
+    /// The flags as five bits, as [`flag_bits`] has them.
+    pub const fn bits(self) -> u16 {
+        (self.aperture as u16 & 15) | (self.two_sided as u16) << 4
     }
 }
 

@@ -19,8 +19,8 @@ use crate::reciprocal::Reciprocal;
 ///
 /// A window reaches eight pixels back and seven beyond its middle pixel, in
 /// which the subtree's own centre lies, rounded to sixteenths: from its left
-/// side on, 8 to 9. With at most 10/32 for the rounding of two levels,
-/// 9 + 6 5/8 + 10/32 stays below 16. A subtree beyond [`crate::canvas::REACH`]
+/// side on, 8 to 9. With at most 8/32 for the rounding of two levels,
+/// 9 + 6 5/8 + 8/32 stays below 16. A subtree beyond [`crate::canvas::REACH`]
 /// of the strip, 8 columns or 9 rows, stays clear of what counts around it.
 const REACH: i32 = (6 << SCREEN_BITS) + (5 << SCREEN_BITS) / 8;
 /// The same where points are two pixels large: half a pixel back, and one
@@ -31,8 +31,8 @@ const REACH_TWO: i32 = (6 << SCREEN_BITS) + (3 << SCREEN_BITS) / 16;
 /// [hole](crate::resolve) of what shows of them between nearer ones.
 const FAR_SIDE_CELLS: u32 = 2;
 
-/// What a subtree's depths may be off by rounding, at most one for each step
-/// and chunk.
+/// What a subtree's depths may be off by rounding, at most one for each step,
+/// row and word.
 pub(super) const DEPTH_ROUNDING: i32 = 16;
 
 /// The steps between neighbours of one level along x, y and z.

@@ -3,22 +3,23 @@
 
 use super::facing::{Facing, along, cone, horizon, turned};
 use super::footprint::{Place, Slopes, extent, is_beside, near_limit, rim_drop};
+use super::mask::{self, Mask};
+use super::record::Record;
 use super::tables::Point;
 use super::traverse::{Cell, Frame, Output};
 use crate::asset::node::{APERTURE_ALL, Flags};
 use crate::reciprocal::reciprocal;
 use crate::splat::{Extent, Splat, draw};
 
-impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
+impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
     /// Draws the children of a cell as splats of their own size.
     #[inline(never)]
     pub(super) fn leaves<const RHO: u8>(
         &self,
         cell: &Cell,
-        record: &[u16],
-        flags: Flags,
+        record: &Record<RHO>,
         attribute: u16,
-        output: &mut Output<'_, '_>,
+        output: &mut Output<'_, '_, 'a>,
     ) {
         let below = usize::from(cell.depth) + 1;
         let level = self.grid.levels().get(below);
@@ -27,17 +28,17 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
             return;
         };
         let extents = self.tables.extents(cell.depth);
-        let facing = cone(flags, attribute, cell.view, extents.eye_radius);
+        let facing = cone(record.flags, attribute, cell.view, extents.eye_radius);
         if facing == Facing::Away {
             return;
         }
-        let seen = Seen::new(cell.view, extents.eye_radius, flags, facing);
+        let seen = Seen::new(cell.view, extents.eye_radius, record.flags, facing);
         let leaves = Leaves { attributes, seen };
         let (near, w) = (self.projection.near, cell.centre.w);
         let nearest = w - extents.half_w;
         if nearest < near_limit(near, w) {
             if !is_beside(self.projection, cell.centre, extents.half_edges) {
-                self.near_leaves(cell, record, &leaves, output);
+                self.near_leaves::<RHO>(cell, record.drawn, &leaves, output);
             }
             return;
         }
@@ -48,31 +49,35 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
             half: slopes.half(self.projection, reciprocal(nearest as u32), 1),
             rim_drop: rim_drop(self.projection, w, inverse, &table.half_edges),
         };
-        leaves.for_each(record, &table.displacements, |displacement, attribute| {
-            let centre = cell.centre.plus(displacement);
-            let place = Place::of(self.projection, centre, reciprocal(centre.w as u32));
-            splat(place, &extent, attribute, output);
-        });
+        leaves.for_each(
+            record.drawn,
+            &table.displacements,
+            |displacement, attribute| {
+                let centre = cell.centre.plus(displacement);
+                let place = Place::of(self.projection, centre, reciprocal(centre.w as u32));
+                splat(place, &extent, attribute, output);
+            },
+        );
     }
 
     /// Leaves of a near block: each has an extent of its own.
     #[inline(never)]
-    fn near_leaves(
+    fn near_leaves<const RHO: u8>(
         &self,
         cell: &Cell,
-        record: &[u16],
+        drawn: Mask<RHO>,
         leaves: &Leaves<'_>,
-        output: &mut Output<'_, '_>,
+        output: &mut Output<'_, '_, 'a>,
     ) {
         let table = self.tables.below(cell.depth);
-        leaves.for_each(record, &table.displacements, |displacement, attribute| {
+        leaves.for_each(drawn, &table.displacements, |displacement, attribute| {
             let centre = cell.centre.plus(displacement);
             self.near_leaf(centre, &table.half_edges, attribute, output);
         });
     }
 
     /// Draws the root alone, of which nothing tells what else it holds.
-    pub(super) fn lone_root(&self, root: &Cell, attribute: u16, output: &mut Output<'_, '_>) {
+    pub(super) fn lone_root(&self, root: &Cell, attribute: u16, output: &mut Output<'_, '_, 'a>) {
         let extents = self.tables.extents(0);
         let flags = Flags {
             aperture: APERTURE_ALL,
@@ -89,7 +94,7 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
         centre: Point,
         half_edges: &[Point; 3],
         attribute: u16,
-        output: &mut Output<'_, '_>,
+        output: &mut Output<'_, '_, 'a>,
     ) {
         let near = self.projection.near;
         if centre.w < near {
@@ -115,7 +120,7 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
 
 /// Hands a sample to the splatter.
 #[inline(always)]
-fn splat(place: Place, extent: &Extent, attribute: u16, output: &mut Output<'_, '_>) {
+fn splat(place: Place, extent: &Extent, attribute: u16, output: &mut Output<'_, '_, '_>) {
     output.stats.samples_drawn += 1;
     output.stats.splats_drawn += 1;
     let splat = Splat {
@@ -179,20 +184,20 @@ struct Leaves<'a> {
 impl Leaves<'_> {
     /// Visits the displacements and attributes of the leaves that are seen.
     #[inline(always)]
-    fn for_each(&self, record: &[u16], displacements: &[Point], mut visit: impl FnMut(Point, u16)) {
+    fn for_each<const RHO: u8>(
+        &self,
+        drawn: Mask<RHO>,
+        displacements: &[Point],
+        mut visit: impl FnMut(Point, u16),
+    ) {
         let mut attributes = self.attributes.iter();
-        for (&half, displacements) in record.iter().zip(displacements.chunks(16)) {
-            let mut bits = half;
-            for &displacement in displacements {
-                if bits & 1 != 0 {
-                    let Some(&attribute) = attributes.next() else {
-                        return;
-                    };
-                    if let Some(attribute) = self.seen.leaf(attribute) {
-                        visit(displacement, attribute);
-                    }
+        for (word, displacements) in drawn.words().zip(displacements.chunks(mask::cells(RHO))) {
+            for (bit, &attribute) in mask::bits(word).zip(attributes.by_ref()) {
+                if let (Some(&displacement), Some(attribute)) =
+                    (displacements.get(bit), self.seen.leaf(attribute))
+                {
+                    visit(displacement, attribute);
                 }
-                bits >>= 1;
             }
         }
     }

@@ -6,13 +6,15 @@
 //! face away are skipped with their subtrees.
 
 mod affine;
+mod blocks;
 mod clip;
 mod facing;
 mod footprint;
 mod leaves;
-mod lists;
+mod mask;
 mod normals;
 mod packed;
+mod record;
 mod siblings;
 mod subtree;
 mod tables;

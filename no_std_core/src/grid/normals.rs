@@ -24,9 +24,9 @@ const DOUBT: i32 = TEST_ONE / 16;
 /// No test exceeds it: sines and doubt add up, and nothing turns away.
 const NEVER: i32 = 1 << 29;
 
-/// The sines of [`APERTURE_SINE`] for [`Normals`].
-static TEST_SINE: [i32; 15] = {
-    let mut sines = [0; 15];
+/// The sines of [`APERTURE_SINE`] for [`Normals`], and of every angle.
+static TEST_SINE: [i32; 16] = {
+    let mut sines = [NEVER; 16];
     let mut aperture = 0;
     while aperture < 15 {
         sines[aperture] = ((APERTURE_SINE[aperture] as i64 * TEST_ONE as i64) >> 15) as i32;
@@ -99,9 +99,9 @@ impl Normals {
     }
 
     #[inline(always)]
-    fn along(&self, code: u16) -> i32 {
+    fn along(&self, code: u16, from: i32) -> i32 {
         let [x, y, z] = coarse(code);
-        x * self.view[0] + y * self.view[1] + z * self.view[2]
+        from + x * self.view[0] + y * self.view[1] + z * self.view[2]
     }
 
     /// Largest component of the viewing direction, Q14.
@@ -113,19 +113,15 @@ impl Normals {
     /// Whether all of a cell faces away, by its cone.
     #[inline(always)]
     pub fn is_away(&self, flags: Flags, code: u16) -> bool {
-        match TEST_SINE.get(usize::from(flags.aperture)) {
-            Some(&sine) => self.along(code) > sine + self.doubt,
-            None => false,
-        }
+        let sine = TEST_SINE[usize::from(flags.aperture) % TEST_SINE.len()];
+        self.along(code, -self.doubt) > sine
     }
 
     /// How all of a cell faces, by its cone.
     #[inline(always)]
     pub fn facing(&self, flags: Flags, code: u16) -> Facing {
-        let Some(&sine) = TEST_SINE.get(usize::from(flags.aperture)) else {
-            return Facing::Maybe;
-        };
-        let (along, limit) = (self.along(code), sine + self.doubt);
+        let sine = TEST_SINE[usize::from(flags.aperture) % TEST_SINE.len()];
+        let (along, limit) = (self.along(code, 0), sine + self.doubt);
         if along > limit {
             Facing::Away
         } else if along < -limit {
@@ -138,7 +134,7 @@ impl Normals {
     /// Whether a sample faces away.
     #[inline(always)]
     pub fn faces_away(&self, attribute: u16) -> bool {
-        self.along(attribute) > 0
+        self.along(attribute, 0) > 0
     }
 }
 

@@ -13,10 +13,11 @@
 //! the window; shifted left by 16 it is what the canvas compares.
 
 use super::affine::Affine;
-use super::lists::{CHUNK_CELLS, COUNTS, LISTS, MAX_CHUNKS, Mask, chunk_rows, chunks};
+use super::mask::{self, MAX_WORDS, Mask, SLOTS, Walk, slabs, slot};
 use super::normals::Normals;
+use super::record::{Stored, record_of};
 use crate::asset::Level;
-use crate::asset::node::{Flags, halves};
+use crate::asset::node::Flags;
 use crate::canvas::{PITCH, WINDOW_CENTRE, Window};
 use crate::normal::OPPOSITE;
 
@@ -64,48 +65,52 @@ impl Step {
 
 /// Displacements from a cell's centre to its subcells', packed.
 ///
-/// A chunk's *pivot* is its middle cell, or the one before the middle. Each
-/// sum that reaches a subcell is rounded to sixteenths once for its chunk and
-/// once for each step from the pivot along x and y: for rho 3 a subcell lies
-/// within 3/32 px of where its steps lead.
+/// They lead by the middle of a word's slabs and the *pivot* of a row, its
+/// middle cell or the one before the middle. Each sum that reaches a subcell is
+/// rounded to sixteenths once for the row, once for the word if there are
+/// several, and once for each step from the pivot: for rho 3 a subcell lies
+/// within 2/32 px of where its steps lead, for rho 4 and 5 within 4/32.
 pub(super) struct Subcells {
-    /// From a chunk's pivot to its cells, in the lists' numbering.
-    pub cells: [u32; CHUNK_CELLS],
-    /// From the centre to each chunk's pivot.
-    pub chunks: [u32; MAX_CHUNKS],
+    /// From the middle of a word's slabs to its cells, by slot.
+    pub cells: [u32; SLOTS],
+    /// From the centre to the middle of each word's slabs.
+    pub words: [u32; MAX_WORDS],
 }
 
 impl Subcells {
     pub const EMPTY: Self = Self {
-        cells: [0; CHUNK_CELLS],
-        chunks: [0; MAX_CHUNKS],
+        cells: [0; SLOTS],
+        words: [0; MAX_WORDS],
     };
 
     /// Fills the table from the steps between neighbours along x, y and z.
     #[inline(always)]
     pub fn fill<const RHO: u8>(&mut self, steps: &[Step; 3]) {
-        let [along_x, along_y, _] = steps.map(Step::packed);
+        let along_x = steps[0].packed();
         let rho = usize::from(RHO);
-        let rows = chunk_rows(RHO);
-        let [pivot_x, pivot_y] = [(rho - 1) / 2, (rows - 1) / 2];
-        let back = |step: u32, count: usize| step.wrapping_mul(count as u32).wrapping_neg();
-        let mut row = back(along_x, pivot_x).wrapping_add(back(along_y, pivot_y));
-        for y in 0..rows {
-            let mut place = row;
-            for x in 0..rho {
-                self.cells[((y * rho + x) ^ 8) % CHUNK_CELLS] = place;
-                place = place.wrapping_add(along_x);
+        let pivot = (rho - 1) / 2;
+        let back = along_x.wrapping_mul(pivot as u32).wrapping_neg();
+        // In half steps from the middle of as many as there are.
+        let half_steps = |index: usize, count: usize| 2 * index as i32 + 1 - count as i32;
+        for z in 0..slabs(RHO) {
+            for y in 0..rho {
+                let [x, y_steps, z_steps] = [
+                    half_steps(pivot, rho),
+                    half_steps(y, rho),
+                    half_steps(z, slabs(RHO)),
+                ];
+                let row = Step::sum(steps, [x, y_steps, z_steps]);
+                let mut place = row.packed().wrapping_add(back);
+                for x in 0..rho {
+                    self.cells[slot((z * rho + y) * rho + x)] = place;
+                    place = place.wrapping_add(along_x);
+                }
             }
-            row = row.wrapping_add(along_y);
         }
-        // In half steps from the centre.
-        let half_steps = |index: usize| 2 * index as i32 + 1 - rho as i32;
-        let mut chunks = self.chunks.iter_mut();
-        for z in 0..rho {
-            for (y, chunk) in (pivot_y..rho).step_by(rows).zip(chunks.by_ref()) {
-                let [x, y, z] = [pivot_x, y, z].map(half_steps);
-                *chunk = Step::sum(steps, [x, y, z]).packed();
-            }
+        let words = rho / slabs(RHO);
+        for (index, word) in self.words.iter_mut().take(words).enumerate() {
+            let along_z = half_steps(index, words) * slabs(RHO) as i32;
+            *word = Step::sum(steps, [0, 0, along_z]).packed();
         }
     }
 }
@@ -133,17 +138,18 @@ impl Brush {
     }
 }
 
-/// Draws a sample, COLUMNS by ROWS pixels of it; of equal depths the first
-/// stays.
+/// Draws a sample, COLUMNS by ROWS pixels of it. Of two samples the larger word
+/// stays: the nearer one, whichever comes first, and of equal depths always
+/// the same.
 #[inline(always)]
 fn dab<const COLUMNS: usize, const ROWS: usize>(place: u32, attribute: u16, window: &mut Window) {
     let first = (place >> 20 & 0xf0f) as usize;
-    let depth = place << 16;
+    let word = place << 16 | u32::from(attribute);
     for row in 0..ROWS {
         for column in 0..COLUMNS {
             let pixel = &mut window[first + row * PITCH + column];
-            if depth > *pixel {
-                *pixel = depth | u32::from(attribute);
+            if word > *pixel {
+                *pixel = word;
             }
         }
     }
@@ -151,34 +157,35 @@ fn dab<const COLUMNS: usize, const ROWS: usize>(place: u32, attribute: u16, wind
 
 /// A cell whose children are drawn.
 #[derive(Clone, Copy)]
-pub(super) struct Block {
+pub(super) struct Block<'a> {
     /// Its centre as a word, with the brush's offset.
     pub place: u32,
-    /// Its drawn record where that is one word, as [`Mask::word`] has it, else
-    /// the record's index in the level below.
+    /// Its drawn record where that is one word, else the record's index in the
+    /// level below.
     pub record: u32,
-    /// Index of its first child there.
-    pub first: u32,
+    /// Attributes of the children that are drawn.
+    pub attributes: &'a [u16],
 }
 
-impl Block {
+impl Block<'_> {
     /// To be overwritten.
     pub const NONE: Self = Self {
         place: 0,
         record: 0,
-        first: 0,
+        attributes: &[],
     };
 
-    /// Its drawn record.
+    /// Its drawn record. `level` is its children's.
     #[inline(always)]
     fn drawn<const RHO: u8>(&self, level: &Level<'_>) -> (Mask<RHO>, Flags) {
-        if let Some(word) = Mask::<RHO>::of_word(self.record) {
-            return (word, Flags::from_last(RHO, (self.record >> 16) as u16));
+        if RHO == 3 {
+            let flags = Flags::from_bits(self.record.flag_bits(RHO));
+            return (self.record.mask(), flags);
         }
-        let first = self.record as usize * halves(RHO);
-        let record = level.drawn.get(first..first + halves(RHO)).unwrap_or(&[]);
-        let last = record.last().copied().unwrap_or(0);
-        (Mask::of(record), Flags::from_last(RHO, last))
+        match record_of(level, self.record as usize) {
+            Some(record) => (record.drawn, record.flags),
+            None => (Mask::NOTHING, Flags::from_bits(0)),
+        }
     }
 }
 
@@ -190,29 +197,24 @@ const BOTH_WAYS: u8 = 13;
 /// children's.
 #[inline(never)]
 pub(super) fn draw_blocks<const RHO: u8, const COLUMNS: usize, const ROWS: usize>(
-    blocks: &[Block],
+    blocks: &[Block<'_>],
     level: &Level<'_>,
     affine: &Affine,
     normals: &Normals,
     window: &mut Window,
 ) -> u32 {
     let mut drawn = 0;
+    let walk = Walk::new();
     for block in blocks {
-        let attributes = level.attributes.get(block.first as usize..).unwrap_or(&[]);
+        drawn += block.attributes.len() as u32;
         let (mask, flags) = block.drawn::<RHO>(level);
-        drawn += if flags.aperture >= BOTH_WAYS {
-            draw_both_ways::<RHO, COLUMNS, ROWS>(
-                block,
-                mask,
-                attributes,
-                affine,
-                (normals, flags.is_sheet()),
-                window,
-            )
+        if flags.aperture >= BOTH_WAYS {
+            let seen = (normals, flags.is_sheet());
+            draw_both_ways::<RHO, COLUMNS, ROWS>(block, mask, affine, seen, window);
         } else {
             let as_it_is = |attribute| (attribute, 0);
-            draw::<RHO, COLUMNS, ROWS>(block, mask, attributes, &affine.leaves, as_it_is, window)
-        };
+            draw::<RHO, COLUMNS, ROWS>(block, mask, &walk, &affine.leaves, as_it_is, window);
+        }
     }
     drawn
 }
@@ -221,30 +223,33 @@ pub(super) fn draw_blocks<const RHO: u8, const COLUMNS: usize, const ROWS: usize
 /// much deeper.
 #[inline(always)]
 fn draw<const RHO: u8, const COLUMNS: usize, const ROWS: usize>(
-    block: &Block,
+    block: &Block<'_>,
     drawn: Mask<RHO>,
-    attributes: &[u16],
+    walk: &Walk,
     subcells: &Subcells,
     seen: impl Fn(u16) -> (u16, u32),
     window: &mut Window,
-) -> u32 {
-    let mut rest = attributes;
-    for index in 0..chunks(RHO) {
-        let bits = drawn.chunk(index);
-        let Some((own, others)) = rest.split_at_checked(usize::from(COUNTS[bits])) else {
+) {
+    let mut rest = block.attributes;
+    for (word, &middle) in drawn.words().zip(&subcells.words) {
+        // One word has as many cells as there are attributes.
+        let count = match mask::words(RHO) {
+            1 => rest.len(),
+            _ => word.count_ones() as usize,
+        };
+        let Some((own, others)) = rest.split_at_checked(count) else {
             break;
         };
         rest = others;
-        let pivot = block.place.wrapping_add(subcells.chunks[index]);
-        let mut list = LISTS[bits];
+        let middle = block.place.wrapping_add(middle);
+        let mut slots = word;
         for &attribute in own {
-            let place = pivot.wrapping_add(subcells.cells[(list & 15) as usize]);
-            list >>= 4;
+            let slot = walk.lowest(&mut slots);
+            let place = middle.wrapping_add(subcells.cells[slot]);
             let (attribute, deeper) = seen(attribute);
             dab::<COLUMNS, ROWS>(place.wrapping_sub(deeper), attribute, window);
         }
     }
-    (attributes.len() - rest.len()) as u32
 }
 
 /// Draws a block whose samples may face either way. Those that face away lie
@@ -253,17 +258,17 @@ fn draw<const RHO: u8, const COLUMNS: usize, const ROWS: usize>(
 /// seen.
 #[inline(never)]
 fn draw_both_ways<const RHO: u8, const COLUMNS: usize, const ROWS: usize>(
-    block: &Block,
+    block: &Block<'_>,
     drawn: Mask<RHO>,
-    attributes: &[u16],
     affine: &Affine,
     (normals, is_sheet): (&Normals, bool),
     window: &mut Window,
-) -> u32 {
+) {
     let flip = if is_sheet { OPPOSITE } else { 0 };
     let seen = |attribute| match normals.faces_away(attribute) {
         true => (attribute ^ flip, affine.far_side),
         false => (attribute, 0),
     };
-    draw::<RHO, COLUMNS, ROWS>(block, drawn, attributes, &affine.leaves, seen, window)
+    let walk = Walk::new();
+    draw::<RHO, COLUMNS, ROWS>(block, drawn, &walk, &affine.leaves, seen, window);
 }

@@ -7,21 +7,21 @@ use super::affine::Affine;
 use super::facing::Facing;
 use super::footprint::Place;
 use super::normals::{Around, Normals};
+use super::record::Record;
 use super::subtree::Subtree;
-use super::traverse::{Cell, Frame, Output, Record};
-use crate::asset::node::Flags;
+use super::traverse::{Cell, Frame, Output};
 use crate::reciprocal::reciprocal;
 
-impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
+impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
     /// Draws what lies SPAN levels below the children of a cell. `false`, with
     /// nothing done, if such subtrees do not fit a window.
     #[inline(never)]
     pub(super) fn siblings<const RHO: u8, const SPAN: usize>(
         &self,
         cell: &Cell,
-        record: Record<'_>,
+        record: &Record<RHO>,
         normals: &Normals,
-        output: &mut Output<'_, '_>,
+        output: &mut Output<'_, '_, 'a>,
     ) -> bool {
         let inverse = reciprocal(cell.centre.w as u32);
         let place = Place::of(self.projection, cell.centre, inverse);
@@ -35,12 +35,10 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
         let around = Around::new(cell.view, radius(cell.depth), radius(cell.depth + 1));
         let (stop, above) = (self.plan.stop(bottom), self.plan.stop(bottom - 1));
         self.for_each_child::<RHO>(cell, record, |child, record, attribute| {
-            let last = record.drawn.last().copied().unwrap_or(0);
-            let flags = Flags::from_last(RHO, last);
             let normals = around.normals(child.view);
             let w = child.centre.w;
             let facing = match self.plan.faces {
-                true => normals.facing(flags, attribute),
+                true => normals.facing(record.flags, attribute),
                 false => Facing::Toward,
             };
             output.stats.facing_tests += u32::from(self.plan.faces);
@@ -52,7 +50,7 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
             let place = Place::of(self.projection, child.centre, reciprocal(w as u32));
             let stops = w >= stop && (SPAN == 1 || w < above);
             if !stops || !affine.reach.fits_depth(&place) {
-                return self.node::<RHO>(&child, record, attribute, output);
+                return self.node::<RHO>(&child, &record, attribute, output);
             }
             output.stats.nodes_visited += 1;
             if !child.inside && !self.is_near_strip(&place, output) {
@@ -61,7 +59,7 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
             }
             let subtree = Subtree {
                 cell: &child,
-                record,
+                record: &record,
                 normals: &normals,
                 facing,
                 affine: &affine,

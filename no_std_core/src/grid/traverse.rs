@@ -7,15 +7,16 @@
 //! again below; the last one or two levels are walked in screen space
 //! ([`super::packed`]) where that is exact enough.
 
+use super::blocks::Queue;
 use super::clip::{Clip, Side};
 use super::facing::EyeSpace;
 use super::footprint::{Place, is_beside, near_limit};
-use super::lists::{self, COUNTS, LISTS, Mask};
+use super::mask;
 use super::normals::Normals;
 use super::packed::Block;
+use super::record::{Record, record_of};
 use super::tables::{Point, Tables};
-use crate::asset::node::{Flags, halves};
-use crate::asset::{Grid, Level};
+use crate::asset::Grid;
 use crate::camera::Camera;
 use crate::canvas::Canvas;
 use crate::plan::Plan;
@@ -32,11 +33,10 @@ pub(super) struct Frame<'a, const CELLS: usize, const LEVELS: usize> {
 }
 
 /// What a strip's traversal writes.
-pub(super) struct Output<'t, 'c> {
+pub(super) struct Output<'t, 'c, 'a> {
     pub canvas: &'t mut Canvas<'c>,
     pub stats: &'t mut Stats,
-    /// For a subtree's blocks, as many as a cell has subcells.
-    pub queue: &'t mut [Block],
+    pub queue: Queue<'t, 'a>,
 }
 
 /// A cell on the way down.
@@ -52,26 +52,6 @@ pub(super) struct Cell {
     pub view: [i32; 3],
     /// Whether all of it is known to lie inside the strip.
     pub inside: bool,
-}
-
-/// The two records of a cell: see [the format](crate::asset).
-#[derive(Clone, Copy)]
-pub(super) struct Record<'a> {
-    /// All children.
-    pub node: &'a [u16],
-    /// Those that are drawn where drawing stops at their depth.
-    pub drawn: &'a [u16],
-}
-
-/// The records of a level, from a cell on.
-pub(super) fn records<'a, const RHO: u8>(
-    level: &Level<'a>,
-    first: usize,
-) -> impl Iterator<Item = Record<'a>> + use<'a, RHO> {
-    let size = halves(RHO);
-    let of = move |words: &'a [u16]| words.get(first * size..).unwrap_or(&[]).chunks_exact(size);
-    let records = of(level.nodes).zip(of(level.drawn));
-    records.map(|(node, drawn)| Record { node, drawn })
 }
 
 /// Draws a grid on a clear canvas.
@@ -128,13 +108,16 @@ fn run<const RHO: u8, const CELLS: usize, const LEVELS: usize>(
     let mut output = Output {
         canvas,
         stats,
-        queue: &mut [Block::NONE; CELLS],
+        queue: Queue {
+            places: &mut [0; CELLS],
+            blocks: &mut [Block::NONE; CELLS],
+        },
     };
     frame.start::<RHO>(&root, &mut output);
 }
 
-impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
-    fn start<const RHO: u8>(&self, root: &Cell, output: &mut Output<'_, '_>) {
+impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
+    fn start<const RHO: u8>(&self, root: &Cell, output: &mut Output<'_, '_, 'a>) {
         let levels = self.grid.levels();
         let (Some(top), next) = (levels.first(), levels.get(1)) else {
             return;
@@ -144,8 +127,8 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
         };
         match next {
             Some(next) if self.plan.depth > 0 => {
-                if let Some(record) = records::<RHO>(next, 0).next() {
-                    self.node::<RHO>(root, record, attribute, output);
+                if let Some(record) = record_of::<RHO>(next, 0) {
+                    self.node::<RHO>(root, &record, attribute, output);
                 }
             }
             _ => self.lone_root(root, attribute, output),
@@ -157,19 +140,15 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
     pub(super) fn node<const RHO: u8>(
         &self,
         cell: &Cell,
-        record: Record<'_>,
+        record: &Record<RHO>,
         attribute: u16,
-        output: &mut Output<'_, '_>,
+        output: &mut Output<'_, '_, 'a>,
     ) {
         output.stats.nodes_visited += 1;
-        let Some(&last) = record.drawn.last() else {
-            return;
-        };
-        let flags = Flags::from_last(RHO, last);
         let normals = Normals::new(cell.view, self.tables.extents(cell.depth).eye_radius);
         if self.plan.faces {
             output.stats.facing_tests += 1;
-            if normals.is_away(flags, attribute) {
+            if normals.is_away(record.flags, attribute) {
                 output.stats.nodes_back_facing += 1;
                 return;
             }
@@ -197,10 +176,10 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
     fn descend<const RHO: u8>(
         &self,
         cell: &Cell,
-        record: Record<'_>,
+        record: &Record<RHO>,
         attribute: u16,
         normals: &Normals,
-        output: &mut Output<'_, '_>,
+        output: &mut Output<'_, '_, 'a>,
     ) {
         let w = cell.centre.w;
         let stops = |levels| w >= self.plan.stop(cell.depth + levels);
@@ -213,9 +192,7 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
             let is_drawn =
                 packs(1) && self.packed::<RHO, 1>(cell, record, attribute, normals, output);
             if !is_drawn {
-                let last = record.drawn.last().copied().unwrap_or(0);
-                let flags = Flags::from_last(RHO, last);
-                self.leaves::<RHO>(cell, record.drawn, flags, attribute, output);
+                self.leaves::<RHO>(cell, record, attribute, output);
             }
             return;
         }
@@ -227,7 +204,7 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
         };
         if !is_drawn {
             self.for_each_child::<RHO>(cell, record, |child, record, attribute| {
-                self.node::<RHO>(&child, record, attribute, output);
+                self.node::<RHO>(&child, &record, attribute, output);
             });
         }
     }
@@ -249,11 +226,11 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
     /// their records and attributes: in file order, first those that are drawn
     /// at their depth, then the others.
     #[inline(always)]
-    pub(super) fn for_each_child<'r, const RHO: u8>(
-        &'r self,
+    pub(super) fn for_each_child<const RHO: u8>(
+        &self,
         cell: &Cell,
-        record: Record<'_>,
-        mut visit: impl FnMut(Cell, Record<'r>, u16),
+        record: &Record<RHO>,
+        mut visit: impl FnMut(Cell, Record<RHO>, u16),
     ) {
         let table = self.tables.below(cell.depth);
         let below = usize::from(cell.depth) + 1;
@@ -261,21 +238,17 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
         let (Some(level), Some(next)) = (levels.get(below), levels.get(below + 1)) else {
             return;
         };
-        let attributes = level.attributes.get(cell.first_child..).unwrap_or(&[]);
-        let mut children = attributes
-            .iter()
-            .zip(records::<RHO>(next, cell.first_child))
-            .zip(cell.first_child..);
         let mut first_child = next.links.get(cell.index).copied().unwrap_or(0) as usize;
-        let cells = lists::chunk_rows(RHO) * usize::from(RHO);
-        for mask in lists::in_file_order::<RHO>(record.node, record.drawn) {
-            for chunk in 0..lists::chunks(RHO) {
-                let bits = mask.chunk(chunk);
-                let mut list = LISTS[bits];
-                let own = children.by_ref().take(usize::from(COUNTS[bits]));
-                for ((&attribute, record), index) in own {
-                    let at = chunk * cells + ((list & 15) as usize ^ 8);
-                    list >>= 4;
+        let mut children = cell.first_child..;
+        for mask in mask::in_file_order(record) {
+            for (word, offset) in mask.words().zip((0..).step_by(mask::cells(RHO))) {
+                for (bit, index) in mask::bits(word).zip(children.by_ref()) {
+                    let (Some(&attribute), Some(record)) =
+                        (level.attributes.get(index), record_of::<RHO>(next, index))
+                    else {
+                        return;
+                    };
+                    let at = offset + bit;
                     let (Some(&displacement), Some(&step)) =
                         (table.displacements.get(at), table.eye_displacements.get(at))
                     else {
@@ -289,7 +262,7 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
                         view: [0, 1, 2].map(|axis| cell.view[axis] + step[axis]),
                         inside: cell.inside,
                     };
-                    first_child += Mask::<RHO>::of(record.node).count() as usize;
+                    first_child += record.children.count();
                     visit(child, record, attribute);
                 }
             }
@@ -299,7 +272,7 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
     /// Whether a subtree centred at a place may touch the strip or what counts
     /// around it.
     #[inline(always)]
-    pub(super) fn is_near_strip(&self, place: &Place, output: &Output<'_, '_>) -> bool {
+    pub(super) fn is_near_strip(&self, place: &Place, output: &Output<'_, '_, 'a>) -> bool {
         use crate::canvas::REACH;
         use crate::numbers::SCREEN_BITS;
         let strip = output.canvas.strip;

@@ -18,9 +18,9 @@ use crate::testing::view::eye_unit;
 use crate::testing::{Exact, Model, dot};
 
 /// What sixteenths of a pixel lose in a packed place: half of one for the
-/// start, and of each of two levels one for the chunk and up to two for the
-/// steps along x and y.
-const PACKED_ROUNDING: f64 = (1.0 + 2.0 * 5.0) / 32.0;
+/// start, and of each of two levels for the row, the word, and up to two steps
+/// along x.
+const PACKED_ROUNDING: f64 = (1.0 + 2.0 * 4.0) / 32.0;
 
 /// Least aperture of blocks whose samples are tested for facing away.
 const BOTH_WAYS: u8 = 13;

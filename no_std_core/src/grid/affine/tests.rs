@@ -1,6 +1,6 @@
 use super::*;
 use crate::canvas::WINDOW_CENTRE;
-use crate::grid::lists;
+use crate::grid::mask;
 use crate::testing::Rng;
 use crate::testing::view::signed;
 
@@ -96,11 +96,11 @@ fn two_levels<const RHO: u8>(seed: u64) {
     }
 }
 
-/// A subcell's displacement, by its chunk and its place in it.
+/// A subcell's displacement, by its word and its place in it.
 fn displacement<const RHO: u8>(subcells: &Subcells, cell: u8) -> u32 {
-    let cells = lists::chunk_rows(RHO) * usize::from(RHO);
-    let (chunk, at) = (usize::from(cell) / cells, usize::from(cell) % cells);
-    subcells.chunks[chunk].wrapping_add(subcells.cells[at ^ 8])
+    let cells = mask::cells(RHO);
+    let (word, bit) = (usize::from(cell) / cells, usize::from(cell) % cells);
+    subcells.words[word].wrapping_add(subcells.cells[mask::slot(bit)])
 }
 
 #[test]

@@ -1,0 +1,239 @@
+//! From a subtree to its blocks: the cells whose children are drawn.
+//!
+//! Three short loops, each of which keeps its data in registers: places by
+//! additions, facing by cones, then what is drawn of those that are kept.
+
+use core::slice;
+
+use super::mask::{self, SLOTS};
+use super::normals::Normals;
+use super::packed::{Block, Subcells};
+use super::record::{Record, Stored};
+use super::subtree::Subtree;
+use super::traverse::Frame;
+use crate::asset::Level;
+use crate::asset::node::Flags;
+use crate::stats::Stats;
+
+/// Memory for one subtree, as much as a cell has subcells.
+pub(super) struct Queue<'t, 'a> {
+    /// Where a cell's children lie.
+    pub places: &'t mut [u32],
+    /// Those that are drawn.
+    pub blocks: &'t mut [Block<'a>],
+}
+
+impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
+    /// The children of the subtree's cell; without those that face away, if
+    /// any may. `level` is that of their own children, which are drawn.
+    #[inline(never)]
+    pub(super) fn blocks<'q, const RHO: u8, const FACES: bool>(
+        &self,
+        subtree: &Subtree<'_, RHO>,
+        level: &Level<'a>,
+        start: u32,
+        queue: &'q mut Queue<'_, 'a>,
+        stats: &mut Stats,
+    ) -> &'q [Block<'a>] {
+        match RHO {
+            2 => self.stored_blocks::<RHO, FACES, [u16; 1]>(subtree, level, start, queue, stats),
+            3 => self.stored_blocks::<RHO, FACES, u32>(subtree, level, start, queue, stats),
+            4 => self.stored_blocks::<RHO, FACES, [u16; 5]>(subtree, level, start, queue, stats),
+            _ => self.stored_blocks::<RHO, FACES, [u16; 9]>(subtree, level, start, queue, stats),
+        }
+    }
+
+    #[inline(always)]
+    fn stored_blocks<'q, const RHO: u8, const FACES: bool, S: Stored>(
+        &self,
+        subtree: &Subtree<'_, RHO>,
+        level: &Level<'a>,
+        start: u32,
+        queue: &'q mut Queue<'_, 'a>,
+        stats: &mut Stats,
+    ) -> &'q [Block<'a>] {
+        let Some(children) = self.children::<RHO, S>(subtree, level, start, queue.places) else {
+            return &[];
+        };
+        let link = level.links.get(subtree.cell.index).copied().unwrap_or(0);
+        let room = queue.blocks.len();
+        let mut kept = Kept {
+            free: queue.blocks.iter_mut(),
+            attributes: level.attributes.get(link as usize..).unwrap_or(&[]),
+        };
+        let normals = FACES.then_some(subtree.normals);
+        if RHO > 3 {
+            children.in_groups(|group| kept.keep::<RHO, S>(group, normals));
+        } else {
+            kept.keep::<RHO, S>(&children, normals);
+        }
+        let count = room - kept.free.len();
+        let visited = children.own.len() as u32;
+        stats.nodes_visited += visited;
+        stats.nodes_back_facing += visited - count as u32;
+        stats.facing_tests += if FACES { visited } else { 0 };
+        queue.blocks.get(..count).unwrap_or(&[])
+    }
+
+    /// The children of the subtree's cell, with their places.
+    #[inline(always)]
+    fn children<'c, const RHO: u8, S: Stored>(
+        &self,
+        subtree: &Subtree<'_, RHO>,
+        level: &Level<'c>,
+        start: u32,
+        places: &'c mut [u32],
+    ) -> Option<Children<'c, S>>
+    where
+        'a: 'c,
+    {
+        let Subtree { cell, record, .. } = *subtree;
+        let count = place_children(record, start, &subtree.affine.blocks, places);
+        let first = cell.first_child;
+        let cells = first..first.checked_add(count)?;
+        let own = self.grid.levels().get(usize::from(cell.depth) + 1)?;
+        let [nodes, drawn] = S::of(level);
+        Some(Children {
+            first,
+            own: own.attributes.get(cells.clone())?,
+            nodes: nodes.get(cells.clone())?,
+            drawn: drawn.get(cells)?,
+            places: places.get(..count)?,
+        })
+    }
+}
+
+/// Siblings that may become blocks; as many of each.
+struct Children<'a, S> {
+    /// Index of the first one.
+    first: usize,
+    /// Their attributes.
+    own: &'a [u16],
+    nodes: &'a [S],
+    drawn: &'a [S],
+    places: &'a [u32],
+}
+
+impl<S: Stored> Children<'_, S> {
+    /// Visits groups of up to 32.
+    #[inline(always)]
+    fn in_groups(&self, mut visit: impl FnMut(&Children<'_, S>)) {
+        let own = self.own.chunks(32).zip(self.nodes.chunks(32));
+        let places = self.drawn.chunks(32).zip(self.places.chunks(32));
+        for (index, ((own, nodes), (drawn, places))) in own.zip(places).enumerate() {
+            visit(&Children {
+                first: self.first + 32 * index,
+                own,
+                nodes,
+                drawn,
+                places,
+            });
+        }
+    }
+
+    /// Which of up to 32 do not face away, lowest bit first.
+    #[inline(always)]
+    fn not_away(&self, normals: &Normals, rho: u8) -> u32 {
+        let (mut kept, mut bit) = (0, 1u32);
+        for (&axis, record) in self.own.iter().zip(self.drawn) {
+            if !normals.is_away(Flags::from_bits(record.flag_bits(rho)), axis) {
+                kept |= bit;
+            }
+            bit = bit.wrapping_shl(1);
+        }
+        kept
+    }
+}
+
+/// Where blocks go.
+struct Kept<'q, 'a> {
+    free: slice::IterMut<'q, Block<'a>>,
+    /// Attributes of their children and those behind.
+    attributes: &'a [u16],
+}
+
+impl Kept<'_, '_> {
+    /// Keeps those of up to 32 cells that do not face away; all without
+    /// normals.
+    #[inline(always)]
+    fn keep<const RHO: u8, S: Stored>(
+        &mut self,
+        children: &Children<'_, S>,
+        normals: Option<&Normals>,
+    ) {
+        let mut bits = match normals {
+            Some(normals) => children.not_away(normals, RHO),
+            None => u32::MAX,
+        };
+        let records = children.drawn.iter().zip(children.nodes);
+        let cells = records.zip(children.places).zip(children.first..);
+        for (((&drawn, &node), &place), index) in cells {
+            let count = node.mask::<RHO>().count();
+            let Some((all, others)) = self.attributes.split_at_checked(count) else {
+                return;
+            };
+            self.attributes = others;
+            let is_kept = bits & 1 != 0;
+            bits >>= 1;
+            if is_kept
+                && let Some(attributes) = all.get(..drawn.mask::<RHO>().count())
+                && let Some(block) = self.free.next()
+            {
+                *block = Block {
+                    place,
+                    record: drawn.word().unwrap_or(index as u32),
+                    attributes,
+                };
+            }
+        }
+    }
+}
+
+/// The cell itself, whose children, in `level`, are drawn.
+#[inline(always)]
+pub(super) fn block<'q, 'a, const RHO: u8>(
+    subtree: &Subtree<'_, RHO>,
+    level: &Level<'a>,
+    start: u32,
+    queue: &'q mut Queue<'_, 'a>,
+) -> &'q [Block<'a>] {
+    let Subtree { cell, record, .. } = subtree;
+    let count = record.drawn.count();
+    let attributes = level.attributes.get(cell.first_child..);
+    let (Some((own, _)), Some(attributes)) = (
+        queue.blocks.split_first_chunk_mut::<1>(),
+        attributes.and_then(|attributes| attributes.get(..count)),
+    ) else {
+        return &[];
+    };
+    *own = [Block {
+        place: start,
+        record: match RHO {
+            3 => record.drawn.first_word() | u32::from(record.flags.bits()) << 27,
+            _ => cell.index as u32,
+        },
+        attributes,
+    }];
+    own
+}
+
+/// Writes the places of a cell's children, in file order; gives their number.
+#[inline(always)]
+fn place_children<const RHO: u8>(
+    record: &Record<RHO>,
+    start: u32,
+    blocks: &Subcells,
+    places: &mut [u32],
+) -> usize {
+    let room = places.len();
+    let mut free = places.iter_mut();
+    for mask in mask::in_file_order(record) {
+        for (word, &middle) in mask.words().zip(&blocks.words) {
+            let middle = start.wrapping_add(middle);
+            for (slot, place) in mask::slots(word).zip(free.by_ref()) {
+                *place = middle.wrapping_add(blocks.cells[slot % SLOTS]);
+            }
+        }
+    }
+    room - free.len()
+}
