@@ -45,7 +45,7 @@ pub fn workspace() -> &'static Path {
 }
 
 /// An error that concerns no file.
-fn failure(what: impl Into<String>, remedy: impl Into<String>) -> Error {
+pub fn failure(what: impl Into<String>, remedy: impl Into<String>) -> Error {
     Error {
         file: None,
         place: Place::Whole,

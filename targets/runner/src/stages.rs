@@ -49,12 +49,16 @@ impl Stage {
             "rhogrid_core::draw::stages::clear" => Some(Self::Clear),
             "rhogrid_core::draw::stages::resolve" => Some(Self::Resolve),
             _ => {
-                let method = function.strip_prefix("<rhogrid_core::grid::traverse::Frame<")?;
-                let (_, name) = method.split_once(">>::")?;
-                let is_first = ["start::<", "node::<"]
-                    .iter()
-                    .any(|first| name.starts_with(first) && !name.contains("{closure"));
-                is_first.then_some(Self::Traversal)
+                // `<type>::node::<3>` or `type::node`, as the symbol tells.
+                let path = function.trim_start_matches('<');
+                let method = path.strip_prefix("rhogrid_core::grid::traverse::Frame<")?;
+                let (_, name) = method.split_once(">::")?;
+                let method = name.strip_suffix('>').map_or(name, |name| {
+                    name.split_once("::<").map_or(name, |(method, _)| method)
+                });
+                ["start", "node"]
+                    .contains(&method)
+                    .then_some(Self::Traversal)
             }
         }
     }
@@ -95,6 +99,14 @@ mod tests {
             ("main", None),
             (&format!("{traverse}node::<3>"), Some(Stage::Traversal)),
             (&format!("{traverse}start::<3>"), Some(Stage::Traversal)),
+            (
+                "rhogrid_core::grid::traverse::Frame<_,_>::node",
+                Some(Stage::Traversal),
+            ),
+            (
+                "rhogrid_core::grid::traverse::Frame<_,_>::node::{{closure}}",
+                None,
+            ),
             (&format!("{traverse}steps"), None),
             (&format!("{traverse}node::<3>::{{closure#0}}"), None),
         ] {
