@@ -20,7 +20,7 @@ pub struct Case {
 
 /// All of them, in the order of the tables.
 #[rustfmt::skip]
-pub static CASES: [Case; 3] = [
+pub static CASES: &[Case] = &[
     Case { name: "demo, level 4", input: "builtin:demo", baking: "--level 4", drawing: "" },
     Case { name: "bunny, level 5", input: "bunny.ply", baking: "--level 5", drawing: "" },
     Case { name: "buddha, level 5", input: "buddha_100k.ply", baking: "--level 5 --up z", drawing: "" },
