@@ -1,15 +1,14 @@
 //! One frame, from cleared buffers to pixels.
 
+mod stages;
+
 use crate::asset::Grid;
 use crate::camera::Camera;
-use crate::canvas::Canvas;
 use crate::grid::traverse;
 use crate::normal::CODES;
 use crate::numbers::{SplatPx, Unit, Weight};
 use crate::plan::Plan;
 use crate::projection::Projection;
-use crate::resolve::resolve;
-use crate::shade::Shader;
 use crate::stats::Stats;
 use crate::target::Target;
 
@@ -79,12 +78,12 @@ pub fn draw(
 ) -> Stats {
     let projection = Projection::new(camera);
     let plan = Plan::with(grid, camera, quality, &projection);
-    let shader = Shader::new(light, grid.materials(), shades);
+    let shader = stages::shade(light, grid.materials(), shades);
     let mut stats = Stats::default();
     for strip in target.strips() {
-        let mut canvas = Canvas::new(target.canvas, strip);
+        let mut canvas = stages::clear(target.canvas, strip);
         traverse(grid, camera, &projection, &plan, &mut canvas, &mut stats);
-        resolve(&canvas, plan.repair, &shader, &mut target.picture);
+        stages::resolve(&canvas, &plan, &shader, &mut target.picture);
     }
     stats
 }

@@ -5,9 +5,15 @@
      orr rN, rN, #0    the next reading of the timer begins an interval
      bic rN, rN, #0    a reading of the timer: begins or ends the interval
 
-   At its end an interval becomes a line in the file given by `out=`: a JSON
-   object of the counts, flushed. The caches are empty when it begins, so that its
-   counts depend on nothing before it.
+   At its end an interval becomes a line in the file given by `out=`, flushed:
+   a JSON object of the counts, of how many instructions each stage had, and of
+   the stage that had not returned. The caches are empty when it begins, so that
+   its counts depend on nothing before it.
+
+     entry=STAGE@ADDRESS    a function, and all that it calls, is this stage
+
+   Stages are numbered from one; what is in none of them is stage zero. A stage
+   ends where its outermost call returns to: no other one begins within it.
 
    What a count costs is no matter of this file: ../runner/src/cycles.rs has
    the model, and passes the delays of results as arguments, in cycles for
@@ -94,6 +100,32 @@ static void fill(struct cache *cache, uint32_t number) {
   cache->hint[number % HINTS] = way;
 }
 
+/* --- stages ----------------------------------------------------------------- */
+
+enum { MAX_STAGES = 8, MAX_ENTRIES = 64 };
+
+static struct entry { uint32_t address; unsigned stage; } entries[MAX_ENTRIES];
+static unsigned entry_count;
+static unsigned last_stage;
+
+static uint64_t stage_instructions[MAX_STAGES];
+static unsigned stage;        /* the current one */
+static uint64_t stage_start;  /* instructions before it */
+static uint32_t stage_return; /* where execution goes on after it */
+
+static void switch_stage(unsigned next) {
+  stage_instructions[stage] += counts.instructions - stage_start;
+  stage_start = counts.instructions;
+  stage = next;
+}
+
+/* The stage that begins at an address, or zero. */
+static unsigned stage_at(uint32_t address) {
+  for (unsigned i = 0; i < entry_count; i++)
+    if (entries[i].address == address) return entries[i].stage;
+  return 0;
+}
+
 /* --- execution -------------------------------------------------------------- */
 
 static enum { IDLE, ARMED, COUNTING } state;
@@ -108,11 +140,21 @@ static void fetch(uint32_t address) {
   fill(&instruction_cache, number);
 }
 
+/* The first instruction of a stage's function: a call ended the block before
+   it, and returns behind that. Comes before on_block. */
+static void on_entry(unsigned cpu, void *user) {
+  (void)cpu;
+  if (stage != 0) return;
+  stage_return = next_address;
+  switch_stage((uintptr_t)user);
+}
+
 /* The first instruction of a block; `user` is its length and its address. */
 static void on_block(unsigned cpu, void *user) {
   (void)cpu;
   uint32_t address = (uintptr_t)user;
   uint32_t bytes = (uintptr_t)user >> 32;
+  if (stage != 0 && address == stage_return) switch_stage(0);
   if (address != next_address) counts.taken_branches++;
   next_address = address + bytes;
   fetch(address);
@@ -152,6 +194,9 @@ static void on_arm(unsigned cpu, void *user) {
 static void begin(void) {
   memset(&counts, 0, sizeof counts);
   memset(words_by_list, 0, sizeof words_by_list);
+  memset(stage_instructions, 0, sizeof stage_instructions);
+  stage_start = 0;
+  stage = 0;
   empty(&instruction_cache);
   empty(&data_cache);
   state = COUNTING;
@@ -163,12 +208,21 @@ static void end(void) {
     counts.multiples += words_by_list[length] / length;
     counts.multiple_words += words_by_list[length];
   }
+  unsigned unfinished = stage;
+  switch_stage(0);
+  fputs("{\"counts\":", out);
   char separator = '{';
 #define PRINT(name)                                                           \
   fprintf(out, "%c\"" #name "\":%" PRIu64, separator, counts.name);           \
   separator = ',';
   COUNTS(PRINT)
-  fputs("}\n", out);
+  fputs("},\"stage_instructions\":", out);
+  separator = '[';
+  for (unsigned i = 0; i <= last_stage; i++) {
+    fprintf(out, "%c%" PRIu64, separator, stage_instructions[i]);
+    separator = ',';
+  }
+  fprintf(out, "],\"unfinished_stage\":%u}\n", unfinished);
   fflush(out);
 }
 
@@ -335,9 +389,14 @@ static void on_translation(qemu_plugin_id_t id, struct qemu_plugin_tb *block) {
     memcpy(&word, qemu_plugin_insn_data(insn), sizeof word);
     struct effect effect = effect_of(word);
 
+    if (i == 0) {
+      unsigned begun = stage_at(address);
+      if (begun) call(insn, on_entry, begun);
+      call(insn, on_block, (uint64_t)length << 34 | address);
+    } else if (address % LINE_BYTES == 0) {
+      call(insn, on_line, address);
+    }
     add(insn, &counts.instructions, 1);
-    if (i == 0) call(insn, on_block, (uint64_t)length << 34 | address);
-    else if (address % LINE_BYTES == 0) call(insn, on_line, address);
     issue(&schedule, insn, &effect);
     if (effect.multiplies)
       add(insn, effect.is_long ? &counts.long_multiplies : &counts.multiplies,
@@ -359,6 +418,20 @@ static const char *value(const char *argument, const char *name) {
   return fits ? argument + length + 1 : NULL;
 }
 
+/* Takes STAGE@ADDRESS; false if it is none or one too many. */
+static bool add_entry(const char *text) {
+  char *rest;
+  unsigned long number = strtoul(text, &rest, 10);
+  if (*rest != '@' || number == 0 || number >= MAX_STAGES ||
+      entry_count == MAX_ENTRIES)
+    return false;
+  uint32_t address = strtoul(rest + 1, &rest, 0);
+  if (*rest != '\0' || rest[-1] == '@') return false;
+  entries[entry_count++] = (struct entry){address, number};
+  if (number > last_stage) last_stage = number;
+  return true;
+}
+
 EXPORT int qemu_plugin_install(qemu_plugin_id_t id, const qemu_info_t *info,
                                int argc, char **argv) {
   (void)info;
@@ -371,6 +444,10 @@ EXPORT int qemu_plugin_install(qemu_plugin_id_t id, const qemu_info_t *info,
       signed_load_delay = atoi(text);
     if ((text = value(argv[i], "multiply_delay")))
       multiply_delay = atoi(text);
+    if ((text = value(argv[i], "entry")) && !add_entry(text)) {
+      fprintf(stderr, "sa1110 plugin: %s is no STAGE@ADDRESS\n", text);
+      return 1;
+    }
   }
   if (!out) {
     fputs("sa1110 plugin: cannot write out=FILE\n", stderr);

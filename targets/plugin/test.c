@@ -280,6 +280,75 @@ static void marks_pair(void) {
   stop();
 }
 
+/* Numbers of instructions in stages 0 to 2, in decimal digits. */
+static uint64_t by_stage(void) {
+  return stage_instructions[0] * 100 + stage_instructions[1] * 10 +
+         stage_instructions[2];
+}
+
+/* Code that calls the stages, at CALLER, and their functions. */
+enum { CALLER = 0x5000, FIRST = 0x6000, AGAIN = 0x6100, SECOND = 0x7000 };
+
+static void stages_end_where_they_return_to(void) {
+  start();
+  RUN(CALLER, {OTHER}, {OTHER});         /* and calls */
+  RUN(FIRST, {OTHER}, {OTHER}, {OTHER}); /* and returns */
+  RUN(CALLER + 8, {OTHER});              /* and calls */
+  RUN(AGAIN, {OTHER});                   /* and returns */
+  RUN(CALLER + 12, {OTHER});             /* and calls */
+  RUN(SECOND, {OTHER}, {OTHER});         /* and returns */
+  RUN(CALLER + 16, {OTHER});
+  stop();
+  CHECK(by_stage(), 642); /* 5, and the reading */
+  CHECK(counts.instructions, 12);
+}
+
+static void what_a_stage_calls_is_part_of_it(void) {
+  start();
+  RUN(CALLER, {OTHER});
+  RUN(FIRST, {OTHER});     /* calls another stage */
+  RUN(SECOND, {OTHER});    /* and returns */
+  RUN(FIRST + 4, {OTHER}); /* calls itself */
+  RUN(FIRST, {OTHER});     /* and returns */
+  RUN(FIRST + 8, {OTHER}); /* and returns */
+  RUN(CALLER + 4, {OTHER});
+  stop();
+  CHECK(by_stage(), 350);
+}
+
+/* The line that an interval becomes ends with this. */
+static void check_line_end(const char *expected) {
+  char line[1024] = "", *end = line;
+  rewind(out);
+  while (fgets(line, sizeof line, out)) end = line + strlen(line);
+  if (strcmp(end - strlen(expected), expected) != 0) {
+    printf("%s does not end with %s", line, expected);
+    failed = 1;
+  }
+}
+
+static void a_stage_that_does_not_return_is_reported(void) {
+  start();
+  RUN(CALLER, {OTHER});
+  RUN(FIRST, {OTHER});
+  RUN(CALLER + 8, {OTHER}); /* not where it was called from */
+  stop();
+  check_line_end("},\"stage_instructions\":[1,3,0],\"unfinished_stage\":1}\n");
+  start();
+  stop();
+  check_line_end("},\"stage_instructions\":[1,0,0],\"unfinished_stage\":0}\n");
+}
+
+static void entries_are_read(void) {
+  CHECK(add_entry("1@0x6000"), true);
+  CHECK(add_entry("1@0x6100"), true);
+  CHECK(add_entry("2@0x7000"), true);
+  const char *wrong[] = {"", "1", "1@", "0@0x6000", "8@0x6000", "1@0x6000x"};
+  for (unsigned i = 0; i < sizeof wrong / sizeof *wrong; i++)
+    CHECK(add_entry(wrong[i]), false);
+  CHECK(entry_count, 3);
+}
+
 int main(void) {
   out = tmpfile();
   load_delay = 1;
@@ -292,5 +361,9 @@ int main(void) {
   stores_change_lines_but_allocate_none();
   fetches_are_by_line();
   marks_pair();
+  entries_are_read();
+  stages_end_where_they_return_to();
+  what_a_stage_calls_is_part_of_it();
+  a_stage_that_does_not_return_is_reported();
   return failed;
 }

@@ -1,4 +1,4 @@
-//! Builds a machine's firmware.
+//! Builds firmware, and other programs that are measured.
 
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
@@ -8,27 +8,30 @@ use rhogrid::error::Error;
 use crate::machine::{Machine, TOOLCHAIN};
 use crate::{failure, workspace};
 
-/// Builds the firmware if anything it is made of has changed, and tells where
-/// the image is. Compiler messages go to stderr.
+/// Builds a machine's firmware if anything it is made of has changed, and
+/// tells where the image is. Compiler messages go to stderr.
 ///
 /// # Errors
 /// When cargo cannot be run or the build fails.
 pub fn build(machine: &Machine) -> Result<PathBuf, Error> {
+    build_package(machine.package, &machine.target.flags())
+}
+
+/// The same for the program of a package of this workspace; `flags` are
+/// cargo's.
+///
+/// # Errors
+/// When cargo cannot be run or the build fails.
+pub fn build_package(package: &str, flags: &[&str]) -> Result<PathBuf, Error> {
     let remedy = format!(
         "`rustup toolchain install {TOOLCHAIN} --profile minimal -c rust-src -c llvm-tools \
          -t thumbv7m-none-eabi` installs what it takes"
     );
     let output = Command::new("cargo")
         .arg(format!("+{TOOLCHAIN}"))
-        .args([
-            "build",
-            "--release",
-            "--quiet",
-            "--package",
-            machine.package,
-        ])
+        .args(["build", "--release", "--quiet", "--package", package])
         .args(["--message-format", "json-render-diagnostics"])
-        .args(machine.target.flags())
+        .args(flags)
         .current_dir(workspace())
         // Firmware must not depend on flags that are meant for the host.
         .env_remove("RUSTFLAGS")
@@ -41,13 +44,10 @@ pub fn build(machine: &Machine) -> Result<PathBuf, Error> {
         .output()
         .map_err(|error| failure(format!("cannot run cargo: {error}"), remedy.clone()))?;
     if !output.status.success() {
-        return Err(failure(
-            format!("the firmware of {} does not build", machine.name),
-            remedy,
-        ));
+        return Err(failure(format!("{package} does not build"), remedy));
     }
-    executable(&String::from_utf8_lossy(&output.stdout), machine.package)
-        .ok_or_else(|| failure("cargo built the firmware but does not say where", ""))
+    executable(&String::from_utf8_lossy(&output.stdout), package)
+        .ok_or_else(|| failure(format!("cargo built {package} but does not say where"), ""))
 }
 
 /// The executable that cargo's messages name for a package.

@@ -1,7 +1,7 @@
 //! One run of the command: asset in, measurements out.
 
 use std::io::{self, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use rhogrid::asset_file::AssetFile;
 use rhogrid::error::Error;
@@ -11,13 +11,13 @@ use crate::frame_file::FrameFile;
 use crate::host::{self, HostFrame};
 use crate::machine::Machine;
 use crate::measurement::Measurement;
-use crate::plugin::{CountsFile, Plugin};
+use crate::plugin::{CountsFile, Interval, Plugin};
 use crate::qemu::{self, Guest};
 use crate::qmp::Qmp;
 use crate::screen::{self, Screen};
 use crate::session::{Ending, Event, Session, ViewResult};
 use crate::views::View;
-use crate::{failure, firmware, workspace};
+use crate::{failure, firmware, symbols, workspace};
 
 /// What to draw, where, and how.
 #[derive(Debug)]
@@ -32,23 +32,36 @@ pub struct Job {
     pub light: Light,
     /// The options.
     pub quality: Quality,
-    /// Whether results are JSON objects.
-    pub json: bool,
+    /// Whether instructions are told apart by stage, too.
+    pub by_stage: bool,
 }
 
-/// Draws on host and machine, prints a line for each view, and compares.
+impl Job {
+    /// What the machine draws.
+    ///
+    /// # Errors
+    /// When the asset cannot be read or is too large.
+    pub fn frame_file(&self) -> Result<FrameFile, Error> {
+        let asset = AssetFile::load(&self.file)?;
+        let cameras = |view: &View| rhogrid_frame::View {
+            warm_up: view.warm_up(&asset),
+            measured: view.camera(&asset),
+        };
+        let cameras: Vec<_> = self.views.iter().map(cameras).collect();
+        FrameFile::new(asset.bytes(), &cameras, self.light, self.quality)
+    }
+}
+
+/// Takes what was measured, view by view.
+pub type Take<'a> = dyn FnMut(&Measurement) -> Result<(), Error> + 'a;
+
+/// Draws on host and machine, measures every view, and compares.
 ///
 /// # Errors
 /// When something is missing or broken, or a picture is not the host's.
-pub fn run(job: &Job) -> Result<(), Error> {
+pub fn measure(job: &Job, take: &mut Take<'_>) -> Result<(), Error> {
     let machine = job.machine;
-    let asset = AssetFile::load(&job.file)?;
-    let cameras = |view: &View| rhogrid_frame::View {
-        warm_up: view.warm_up(&asset),
-        measured: view.camera(&asset),
-    };
-    let cameras: Vec<_> = job.views.iter().map(cameras).collect();
-    let frame_file = FrameFile::new(asset.bytes(), &cameras, job.light, job.quality)?;
+    let frame_file = job.frame_file()?;
     frame_file.check_fits(machine)?;
     qemu::check(machine)?;
     let host_frames = host::render(&frame_file)?;
@@ -61,11 +74,7 @@ pub fn run(job: &Job) -> Result<(), Error> {
     let frame_path = folder.path().join("frame");
     let socket = folder.path().join("qmp");
     frame_file.save(&frame_path)?;
-    let plugin = if machine.has_cycle_model {
-        Plugin::build(folder.path()).map_or_else(no_estimate, Some)
-    } else {
-        None
-    };
+    let plugin = plugin(job, &firmware, folder.path())?;
     let plugin_option = plugin.as_ref().map(Plugin::option);
     let mut guest = Guest::start(
         machine,
@@ -75,7 +84,7 @@ pub fn run(job: &Job) -> Result<(), Error> {
         plugin_option.as_deref(),
     )?;
     let mut counts_file = plugin.as_ref().map(Plugin::counts_file);
-    let (ending, differing) = listen(job, &mut guest, counts_file.as_mut(), &host_frames)?;
+    let (ending, differing) = listen(job, &mut guest, counts_file.as_mut(), &host_frames, take)?;
     let screen_result = if machine.has_screen {
         let dump = folder.path().join("screen.ppm");
         Qmp::connect(&socket)?.screendump(&dump)?;
@@ -100,10 +109,19 @@ pub fn run(job: &Job) -> Result<(), Error> {
     ))
 }
 
-/// A run without the plugin measures all else.
-fn no_estimate(error: Error) -> Option<Plugin> {
-    eprintln!("note: cycles are not estimated: {error}");
-    None
+/// The machine's plugin. A run without it measures all but cycles and stages.
+fn plugin(job: &Job, firmware: &Path, folder: &Path) -> Result<Option<Plugin>, Error> {
+    if job.by_stage {
+        let entries = symbols::stage_entries(firmware)?;
+        return Plugin::build(folder, entries).map(Some);
+    }
+    if !job.machine.has_cycle_model {
+        return Ok(None);
+    }
+    let plugin = Plugin::build(folder, Vec::new());
+    Ok(plugin
+        .inspect_err(|error| eprintln!("note: cycles are not estimated: {error}"))
+        .ok())
 }
 
 /// Follows the firmware to its end; returns the names of the views whose
@@ -113,21 +131,21 @@ fn listen<'a>(
     guest: &mut Guest,
     mut counts_file: Option<&mut CountsFile>,
     host_frames: &[HostFrame],
+    take: &mut Take<'_>,
 ) -> Result<(Ending, Vec<&'a str>), Error> {
     let mut session = Session::new(job.machine.clock, job.views.len());
     let mut differing = Vec::new();
     let mut expected = job.views.iter().zip(host_frames);
-    let mut estimate = |between_readings| {
+    let mut interval = |between_readings| {
         let next = |file: &mut &mut CountsFile| file.next(between_readings);
-        let counts = counts_file.as_mut().map(next).transpose()?;
-        Ok::<_, Error>(counts.map(|counts| counts.cycles()))
+        counts_file.as_mut().map(next).transpose()
     };
     loop {
         match session.take(&guest.line()?)? {
             Event::Greeting => {}
             Event::Check { between_readings } => {
                 // The plugin must count these, too, as the timer does.
-                estimate(between_readings)?;
+                interval(between_readings)?;
             }
             Event::End(ending) => return Ok((ending, differing)),
             Event::View(result) => {
@@ -135,9 +153,9 @@ fn listen<'a>(
                 let Some((view, host_frame)) = expected.next() else {
                     continue;
                 };
-                let cycles = estimate(result.between_readings)?;
-                let measurement = measurement(job.machine, view, &result, cycles, host_frame);
-                print(&measurement, job.json)?;
+                let interval = interval(result.between_readings)?;
+                let measurement = measurement(job, view, &result, interval.as_ref(), host_frame)?;
+                take(&measurement)?;
                 if !measurement.agrees() {
                     differing.push(view.name.as_str());
                 }
@@ -147,24 +165,34 @@ fn listen<'a>(
 }
 
 fn measurement(
-    machine: &Machine,
+    job: &Job,
     view: &View,
     result: &ViewResult,
-    cycles_estimate: Option<u64>,
+    interval: Option<&Interval>,
     host_frame: &HostFrame,
-) -> Measurement {
-    Measurement {
-        machine: machine.name.to_owned(),
+) -> Result<Measurement, Error> {
+    let reading = result.between_readings - result.instructions;
+    let stages = interval
+        .filter(|_| job.by_stage)
+        .map(|interval| interval.stages(reading))
+        .transpose()?;
+    Ok(Measurement {
+        machine: job.machine.name.to_owned(),
         view: view.name.clone(),
         instructions: result.instructions,
-        cycles_estimate,
+        cycles_estimate: interval.map(|interval| interval.counts.cycles()),
         frame_hash: result.frame_hash,
         host_frame_hash: host_frame.hash,
         stack_bytes: result.stack_bytes,
-    }
+        stages,
+    })
 }
 
-fn print(measurement: &Measurement, json: bool) -> Result<(), Error> {
+/// Prints a line, with `json` as an object.
+///
+/// # Errors
+/// When nobody reads it.
+pub fn print(measurement: &Measurement, json: bool) -> Result<(), Error> {
     let line = if json {
         serde_json::to_string(measurement).map_err(|error| failure(error.to_string(), ""))?
     } else {

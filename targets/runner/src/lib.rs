@@ -8,7 +8,9 @@
 //! ```
 //!
 //! Where a machine has a cycle model, QEMU runs `../plugin/sa1110.c`, which
-//! counts; plugin reads the counts, and cycles makes an estimate of them.
+//! counts; plugin reads the counts, and cycles makes an estimate of them. Where
+//! symbols tells it which functions begin which of the stages, it counts by
+//! stage, too.
 
 #![forbid(unsafe_code)]
 
@@ -27,6 +29,9 @@ pub mod qemu;
 pub mod qmp;
 pub mod screen;
 pub mod session;
+pub mod stages;
+pub mod symbols;
+pub mod toolchain;
 pub mod views;
 
 use std::path::Path;
@@ -40,7 +45,7 @@ pub fn workspace() -> &'static Path {
 }
 
 /// An error that concerns no file.
-fn failure(what: impl Into<String>, remedy: impl Into<String>) -> Error {
+pub fn failure(what: impl Into<String>, remedy: impl Into<String>) -> Error {
     Error {
         file: None,
         place: Place::Whole,

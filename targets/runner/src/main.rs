@@ -7,7 +7,7 @@ use std::process::ExitCode;
 use clap::error::ErrorKind;
 use clap::{CommandFactory, Parser};
 use rhogrid::cli::{Failure, QualityArgs, core_light, core_quality, float_light};
-use rhogrid_targets::job::{Job, run};
+use rhogrid_targets::job::{Job, measure, print};
 use rhogrid_targets::machine::{self, Machine};
 use rhogrid_targets::views::{self, View};
 
@@ -54,7 +54,10 @@ fn main() -> ExitCode {
             .error(ErrorKind::InvalidValue, what)
             .exit();
     }
-    match run(&arguments.job()) {
+    let json = arguments.json;
+    match measure(&arguments.job(), &mut |measurement| {
+        print(measurement, json)
+    }) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("error: {error}");
@@ -92,7 +95,7 @@ impl Arguments {
             views,
             light: core_light(&self.quality),
             quality: core_quality(&self.quality),
-            json: self.json,
+            by_stage: false,
         }
     }
 }

@@ -3,6 +3,7 @@
 use serde::{Serialize, Serializer};
 
 use crate::cycles::CLOCK_MHZ;
+use crate::stages::StageInstructions;
 
 /// What was measured for one view.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -23,6 +24,9 @@ pub struct Measurement {
     pub host_frame_hash: u32,
     /// Stack that the draw call used below its caller's frame.
     pub stack_bytes: u32,
+    /// Instructions of each stage, where they are asked for.
+    #[serde(skip)]
+    pub stages: Option<StageInstructions>,
 }
 
 fn hex<S: Serializer>(hash: &u32, serializer: S) -> Result<S::Ok, S::Error> {
@@ -69,6 +73,7 @@ mod tests {
             frame_hash: 0x00ab_cdef,
             host_frame_hash: 0x00ab_cdef,
             stack_bytes: 112,
+            stages: None,
         }
     }
 

@@ -2,10 +2,10 @@
 //! of ARMv4. Uses llvm-objdump and llvm-readobj of the firmware's toolchain.
 
 use std::path::{Path, PathBuf};
-use std::process::{Command, ExitCode};
+use std::process::ExitCode;
 
 use rhogrid_targets::armv4::{examine, has_thumb};
-use rhogrid_targets::machine::TOOLCHAIN;
+use rhogrid_targets::toolchain::llvm;
 
 /// Refused lines that are shown; the rest is counted.
 const SHOWN: usize = 20;
@@ -32,20 +32,16 @@ fn main() -> ExitCode {
 }
 
 fn check(image: &Path) -> Result<usize, String> {
-    let tools = tools()?;
-    let symbols = output(
-        Command::new(tools.join("llvm-readobj"))
-            .arg("--symbols")
-            .arg(image),
-    )?;
-    if has_thumb(&symbols) {
+    let tool = |name: &str, options: &[&str]| {
+        let options = options.iter().map(Path::new);
+        let arguments: Vec<&Path> = options.chain([image]).collect();
+        llvm(name, &arguments).map_err(|error| error.to_string())
+    };
+    if has_thumb(&tool("llvm-readobj", &["--symbols"])?) {
         return Err("contains Thumb code".to_owned());
     }
-    let disassembly = output(
-        Command::new(tools.join("llvm-objdump"))
-            .args(["-d", "--no-show-raw-insn", "--triple=armv7a-none-eabi"])
-            .arg(image),
-    )?;
+    let options = ["-d", "--no-show-raw-insn", "--triple=armv7a-none-eabi"];
+    let disassembly = tool("llvm-objdump", &options)?;
     let finding = examine(&disassembly);
     if finding.instructions == 0 {
         return Err("contains no ARM code".to_owned());
@@ -64,26 +60,4 @@ fn check(image: &Path) -> Result<usize, String> {
         finding.refused.len(),
         shown.join("\n")
     ))
-}
-
-/// The folder of the toolchain's own LLVM tools.
-fn tools() -> Result<PathBuf, String> {
-    let toolchain = format!("+{TOOLCHAIN}");
-    let libraries = output(Command::new("rustc").args([&toolchain, "--print", "target-libdir"]))?;
-    Ok(Path::new(libraries.trim()).with_file_name("bin"))
-}
-
-fn output(command: &mut Command) -> Result<String, String> {
-    let remedy = format!(
-        "`rustup toolchain install {TOOLCHAIN} --profile minimal -c llvm-tools` installs it"
-    );
-    let program = command.get_program().to_string_lossy().into_owned();
-    let output = command
-        .output()
-        .map_err(|error| format!("cannot run {program}: {error}; {remedy}"))?;
-    if !output.status.success() {
-        let complaint = String::from_utf8_lossy(&output.stderr);
-        return Err(format!("{program} failed: {}", complaint.trim()));
-    }
-    Ok(String::from_utf8_lossy(&output.stdout).into_owned())
 }

@@ -1,0 +1,33 @@
+//! Stages that the compiler would merge with the draw call. As functions of
+//! their own they can be told apart in a profile of an optimised build, which
+//! costs a few dozen instructions a strip.
+
+use super::Light;
+use crate::asset::Rgb;
+use crate::canvas::Canvas;
+use crate::plan::Plan;
+use crate::shade::Shader;
+use crate::target::{Picture, Rect};
+
+/// The colours of a frame.
+#[inline(never)]
+pub(super) fn shade<'a>(light: &Light, materials: &'a [Rgb], memory: &'a mut [u16]) -> Shader<'a> {
+    Shader::new(light, materials, memory)
+}
+
+/// A clear canvas for a strip.
+#[inline(never)]
+pub(super) fn clear(words: &mut [u32], strip: Rect) -> Canvas<'_> {
+    Canvas::new(words, strip)
+}
+
+/// A strip's pixels from its canvas.
+#[inline(never)]
+pub(super) fn resolve(
+    canvas: &Canvas<'_>,
+    plan: &Plan,
+    shader: &Shader<'_>,
+    picture: &mut Picture<'_>,
+) {
+    crate::resolve::resolve(canvas, plan.repair, shader, picture);
+}
