@@ -134,7 +134,7 @@ pub(super) fn bake<S: Surface>(
             .map(|child| child.cell)
             .collect();
     }
-    filter(&mut levels, options.two_sided);
+    filter(&mut levels, options);
     finish(options.rho, options.shell, &levels)
 }
 

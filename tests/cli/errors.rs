@@ -299,6 +299,7 @@ fn inputs_are_not_replaced_and_links_stay_links() {
         "--rho 2",
         "--level 1",
         "--shell fat",
+        "--normals nearest",
         "--up y",
         "--two-sided",
     ] {
