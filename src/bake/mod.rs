@@ -20,7 +20,7 @@ use crate::error::{Error, Place};
 use crate::geometry::{Geometry, Material, Up};
 
 pub use shell::{BakedGrid, BakedLevel};
-pub use surface::{Sample, Surface};
+pub use surface::{Aabb, Sample, Surface};
 
 /// Which normals intermediate samples have.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -110,6 +110,14 @@ pub fn grid(
         cube,
         materials: materials.iter().map(|material| material.diffuse).collect(),
     })
+}
+
+/// Geometry as a baker sees it, in the cube's coordinates.
+pub fn surface(geometry: &Geometry, cube: &Cube) -> Box<dyn Surface> {
+    match geometry {
+        Geometry::Mesh(mesh) => Box::new(triangles::MeshSurface::new(mesh, cube)),
+        Geometry::Cloud(cloud) => Box::new(points::CloudSurface::new(cloud, cube)),
+    }
 }
 
 /// What a baker reports while it works.

@@ -263,6 +263,7 @@ impl<S: Surface> Baker<'_, S> {
         let mut found = (
             0,
             Sample {
+                point: centre,
                 distance_squared: f64::INFINITY,
                 normal: Vec3::Y,
                 material: 0,
