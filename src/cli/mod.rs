@@ -16,8 +16,11 @@ use clap::{Parser, Subcommand};
 
 use crate::error::{Error, Place};
 
-pub use args::{QualityArgs, SourceArgs, Triple, ViewArgs};
-pub use frame::{Frame, core_camera, core_light, core_quality, draw_frame, float_light};
+pub use args::{QualityArgs, Size, SourceArgs, Triple, ViewArgs};
+pub use frame::{
+    Frame, core_camera, core_light, core_quality, draw_frame, float_light, float_view,
+};
+pub use info::Description;
 pub use model::Model;
 
 /// Bakes, previews and measures 3D assets for devices without FPU, GPU or
