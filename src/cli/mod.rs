@@ -8,6 +8,7 @@ mod frame;
 mod info;
 mod model;
 mod render;
+mod report;
 
 use std::io::Write;
 use std::process::ExitCode;
@@ -42,6 +43,8 @@ enum Command {
     Render(Box<render::RenderArgs>),
     /// Measure the difference of two pictures
     Compare(compare::CompareArgs),
+    /// Measure what settings cost and how good they are
+    Report(report::ReportArgs),
 }
 
 /// Why a command did not do its work.
@@ -81,6 +84,7 @@ pub fn run() -> ExitCode {
         Some(Command::Info(args)) => info::run(&args),
         Some(Command::Render(args)) => render::run(&args),
         Some(Command::Compare(args)) => compare::run(&args),
+        Some(Command::Report(args)) => report::run(&args),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,
