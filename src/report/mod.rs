@@ -11,11 +11,14 @@
 //! alone.
 
 mod effort;
+mod float;
 mod machine;
 mod memory;
 mod model;
 mod operations;
 mod page;
+mod plot;
+mod quality;
 mod row;
 mod timing;
 
@@ -69,7 +72,7 @@ struct Plot {
 }
 
 /// The chapters, in the page's order.
-const CHAPTERS: [Chapter; 2] = [memory::CHAPTER, operations::CHAPTER];
+const CHAPTERS: [Chapter; 3] = [memory::CHAPTER, operations::CHAPTER, quality::CHAPTER];
 
 /// The files that a report looks for in a folder of models, and which of
 /// their axes points up.
