@@ -16,4 +16,5 @@ pub mod measure;
 pub mod output;
 pub mod picture;
 pub mod reference;
+pub mod report;
 pub mod view;

@@ -33,6 +33,13 @@ pub fn widen_rgb565(pixel: u16) -> [u8; 3] {
     [five(red), (green << 2 | green >> 4) as u8, five(blue)]
 }
 
+/// The nearest RGB565 pixel of channels from 0 to 255.
+pub fn rgb565(channels: [f64; 3]) -> u16 {
+    let nearest = |value: f64, full: f64| (value / 255.0 * full).round().clamp(0.0, full) as u16;
+    let [red, green, blue] = channels;
+    nearest(red, 31.0) << 11 | nearest(green, 63.0) << 5 | nearest(blue, 31.0)
+}
+
 impl Picture {
     /// Widens a frame of `width * height` RGB565 pixels without stride.
     ///
@@ -139,6 +146,7 @@ mod tests {
         for pixel in 0..=u16::MAX {
             let [red, green, blue] = widen_rgb565(pixel).map(u16::from);
             assert_eq!((red >> 3) << 11 | (green >> 2) << 5 | blue >> 3, pixel);
+            assert_eq!(rgb565([red, green, blue].map(f64::from)), pixel);
         }
     }
 

@@ -20,6 +20,7 @@ use rhogrid_core::normal::{CODE_MASK, COMPONENT_BITS, decode};
 
 use super::cone::{Directions, OPPOSED_COSINE, aperture, code};
 use super::touched::{Touched, TouchedLevel};
+use super::{GridOptions, Normals};
 
 /// Length of the leaves' mean normal, one at most, below which the nearest
 /// point's serves better: two faces of equal shares fall below it from 91
@@ -76,7 +77,8 @@ impl Below {
 }
 
 /// Filters the samples of all levels but the finest, and gives the cells above
-/// each level their cones and two-sided flags; `two_sided` assets skip nothing.
+/// each level their cones and two-sided flags; two-sided assets skip nothing.
+/// Where normals are to be the nearest points', samples stay.
 ///
 /// A flag concerns a cell's drawn children, where drawing stops at them or the
 /// file is cut behind them. A filtered child may face away while some of what
@@ -84,7 +86,8 @@ impl Below {
 /// sheet. Smaller angles are left to the horizon's tolerance, the cell's
 /// radius: flags from 25 or from 60 degrees on turn holes into as many pixels
 /// that see through (bunny, eight pixels a splat).
-pub(super) fn filter(levels: &mut [TouchedLevel], two_sided: bool) {
+pub(super) fn filter(levels: &mut [TouchedLevel], options: &GridOptions) {
+    let two_sided = options.two_sided;
     let directions = Directions::new();
     // Of the cells of the level at hand; the finest has nothing below.
     let mut below: Vec<Below> = Vec::new();
@@ -99,7 +102,9 @@ pub(super) fn filter(levels: &mut [TouchedLevel], two_sided: bool) {
             let parts = below.get(range.clone()).unwrap_or(&[]);
             let children = &children[range];
             let own = Below::gather(children, parts, &record.faces);
-            cell.attribute = own.filtered(cell.attribute);
+            if options.normals == Normals::Filtered {
+                cell.attribute = own.filtered(cell.attribute);
+            }
             let cosine = directions.least_cosine(cell.attribute, &own.codes);
             let mut drawn = children
                 .iter()

@@ -20,7 +20,18 @@ use crate::error::{Error, Place};
 use crate::geometry::{Geometry, Material, Up};
 
 pub use shell::{BakedGrid, BakedLevel};
-pub use surface::{Sample, Surface};
+pub use surface::{Aabb, Sample, Surface};
+
+/// Which normals intermediate samples have.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Normals {
+    /// The mean of the leaves below, where that tells something.
+    #[default]
+    Filtered,
+    /// Those of the surface's points nearest to the cells' centres, as leaves
+    /// have them.
+    Nearest,
+}
 
 /// What a grid baker is asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,6 +42,8 @@ pub struct GridOptions {
     pub level: u8,
     /// Which cells to keep.
     pub shell: Shell,
+    /// Which normals intermediate samples have.
+    pub normals: Normals,
     /// Draw every surface from both sides.
     pub two_sided: bool,
     /// Which source axis points up; the geometry is already turned, the asset
@@ -44,6 +57,7 @@ impl Default for GridOptions {
             rho: 3,
             level: 4,
             shell: Shell::Thin,
+            normals: Normals::Filtered,
             two_sided: false,
             up: Up::Y,
         }
@@ -96,6 +110,14 @@ pub fn grid(
         cube,
         materials: materials.iter().map(|material| material.diffuse).collect(),
     })
+}
+
+/// Geometry as a baker sees it, in the cube's coordinates.
+pub fn surface(geometry: &Geometry, cube: &Cube) -> Box<dyn Surface> {
+    match geometry {
+        Geometry::Mesh(mesh) => Box::new(triangles::MeshSurface::new(mesh, cube)),
+        Geometry::Cloud(cloud) => Box::new(points::CloudSurface::new(cloud, cube)),
+    }
 }
 
 /// What a baker reports while it works.

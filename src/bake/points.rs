@@ -108,8 +108,10 @@ impl Surface for CloudSurface {
 
     fn sample_at(&self, primitive: u32, point: DVec3) -> Sample {
         let tile = self.tile(primitive);
+        let nearest = tile.nearest(point);
         Sample {
-            distance_squared: (tile.nearest(point) - point).length_squared(),
+            point: nearest,
+            distance_squared: (nearest - point).length_squared(),
             normal: tile.normal.as_vec3(),
             material: 0,
         }

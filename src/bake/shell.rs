@@ -134,7 +134,7 @@ pub(super) fn bake<S: Surface>(
             .map(|child| child.cell)
             .collect();
     }
-    filter(&mut levels, options.two_sided);
+    filter(&mut levels, options);
     finish(options.rho, options.shell, &levels)
 }
 
@@ -263,6 +263,7 @@ impl<S: Surface> Baker<'_, S> {
         let mut found = (
             0,
             Sample {
+                point: centre,
                 distance_squared: f64::INFINITY,
                 normal: Vec3::Y,
                 material: 0,

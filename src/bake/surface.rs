@@ -38,6 +38,8 @@ impl Aabb {
 /// A point of a surface with its attributes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
+    /// The point itself.
+    pub point: DVec3,
     /// Squared distance from the point that was asked for.
     pub distance_squared: f64,
     /// Unit shading normal.

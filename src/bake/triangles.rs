@@ -72,6 +72,7 @@ impl Surface for MeshSurface {
             .try_normalize()
             .map_or(face.normals[0], |normal| normal.as_vec3());
         Sample {
+            point: nearest,
             distance_squared: (nearest - point).length_squared(),
             normal,
             material: face.material,

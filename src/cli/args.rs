@@ -9,7 +9,7 @@ use rhogrid_core::asset::{Shell, max_depth};
 use rhogrid_core::draw::Quality;
 
 use super::Failure;
-use crate::bake::GridOptions;
+use crate::bake::{GridOptions, Normals};
 use crate::geometry::Up;
 
 /// What a mesh or cloud is baked into.
@@ -37,6 +37,24 @@ impl From<ShellChoice> for Shell {
     }
 }
 
+/// Which normals intermediate samples have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum NormalChoice {
+    /// The mean of what a cell holds, where that tells something
+    Filtered,
+    /// The surface's at the point nearest to the cell's centre
+    Nearest,
+}
+
+impl From<NormalChoice> for Normals {
+    fn from(choice: NormalChoice) -> Self {
+        match choice {
+            NormalChoice::Filtered => Self::Filtered,
+            NormalChoice::Nearest => Self::Nearest,
+        }
+    }
+}
+
 /// How wide a sample's attribute is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum AttributeChoice {
@@ -60,6 +78,9 @@ pub struct SourceArgs {
     /// Which cells to keep [default: thin]
     #[arg(long, value_enum)]
     pub shell: Option<ShellChoice>,
+    /// Normals of intermediate samples [default: filtered]
+    #[arg(long, value_enum)]
+    pub normals: Option<NormalChoice>,
     /// Which source axis points up [default: y]
     #[arg(long, value_enum)]
     pub up: Option<Up>,
@@ -96,6 +117,7 @@ impl SourceArgs {
             ("--rho", self.rho.is_some()),
             ("--level", self.level.is_some()),
             ("--shell", self.shell.is_some()),
+            ("--normals", self.normals.is_some()),
             ("--up", self.up.is_some()),
             ("--two-sided", self.two_sided),
         ];
@@ -115,6 +137,7 @@ impl SourceArgs {
             rho: self.rho.unwrap_or(defaults.rho),
             level: self.level.unwrap_or(defaults.level),
             shell: self.shell.map_or(defaults.shell, Shell::from),
+            normals: self.normals.map_or(defaults.normals, Normals::from),
             two_sided: self.two_sided,
             up: self.up.unwrap_or(defaults.up),
         }

@@ -33,18 +33,20 @@ pub struct Description {
     two_sided: bool,
     up: &'static str,
     /// Stored cells.
-    cells_per_depth: Vec<usize>,
+    pub cells_per_depth: Vec<usize>,
     /// Those that are drawn where drawing stops at their depth.
-    drawn_cells_per_depth: Vec<usize>,
+    pub drawn_cells_per_depth: Vec<usize>,
     /// Non-empty subcells of an intermediate cell, in the mean.
-    alpha: Option<f64>,
+    pub alpha: Option<f64>,
     materials: Vec<[u8; 3]>,
     centre: [f64; 3],
     half_side: f64,
     radius: f64,
     attribute_bits: u8,
-    bytes_total: usize,
-    bytes: ByteCounts,
+    /// The whole file.
+    pub bytes_total: usize,
+    /// What they are for.
+    pub bytes: ByteCounts,
     /// Everything counted: masks, links, attributes, tables, header. A leaf
     /// sample is a drawn cell of the finest level.
     bits_per_leaf_sample: f64,
@@ -52,15 +54,17 @@ pub struct Description {
 
 /// Where an asset's bytes go.
 #[derive(Debug, Serialize)]
-struct ByteCounts {
-    links: usize,
+pub struct ByteCounts {
+    /// Indices of first grandchildren.
+    pub links: usize,
     /// Node records: occupancy, cones.
-    masks: usize,
+    pub masks: usize,
     /// Drawn records, where a level has some of its own.
-    drawn_masks: usize,
-    attributes: usize,
+    pub drawn_masks: usize,
+    /// Attributes of all samples.
+    pub attributes: usize,
     /// Header, section table, materials, counts and padding.
-    rest: usize,
+    pub rest: usize,
 }
 
 impl ByteCounts {

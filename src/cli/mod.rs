@@ -8,6 +8,7 @@ mod frame;
 mod info;
 mod model;
 mod render;
+mod report;
 
 use std::io::Write;
 use std::process::ExitCode;
@@ -16,8 +17,11 @@ use clap::{Parser, Subcommand};
 
 use crate::error::{Error, Place};
 
-pub use args::{QualityArgs, SourceArgs, Triple, ViewArgs};
-pub use frame::{Frame, core_camera, core_light, core_quality, draw_frame, float_light};
+pub use args::{QualityArgs, Size, SourceArgs, Triple, ViewArgs};
+pub use frame::{
+    Frame, core_camera, core_light, core_quality, draw_frame, float_light, float_view,
+};
+pub use info::Description;
 pub use model::Model;
 
 /// Bakes, previews and measures 3D assets for devices without FPU, GPU or
@@ -39,6 +43,8 @@ enum Command {
     Render(Box<render::RenderArgs>),
     /// Measure the difference of two pictures
     Compare(compare::CompareArgs),
+    /// Measure what settings cost and how good they are
+    Report(report::ReportArgs),
 }
 
 /// Why a command did not do its work.
@@ -78,6 +84,7 @@ pub fn run() -> ExitCode {
         Some(Command::Info(args)) => info::run(&args),
         Some(Command::Render(args)) => render::run(&args),
         Some(Command::Compare(args)) => compare::run(&args),
+        Some(Command::Report(args)) => report::run(&args),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

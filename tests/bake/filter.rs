@@ -2,7 +2,7 @@
 //! all that lies below it, as the asset tells.
 
 use glam::DVec3;
-use rhogrid::bake::GridOptions;
+use rhogrid::bake::{GridOptions, Normals};
 use rhogrid::geometry::Mesh;
 use rhogrid::import::procedural::{demo, shapes};
 use rhogrid_core::asset::node::{APERTURE_ALL, APERTURE_COSINE};
@@ -23,6 +23,7 @@ const OPPOSED_COSINE: f64 = -0.2;
 /// All cells of an asset with its faces.
 struct Twin {
     rho: u8,
+    normals: Normals,
     depths: Vec<Vec<Cell>>,
     faces: Vec<Face>,
 }
@@ -31,6 +32,7 @@ impl Twin {
     fn new(mesh: &Mesh, options: &GridOptions) -> Self {
         Self {
             rho: options.rho,
+            normals: options.normals,
             depths: cells(&baked(mesh, options).grid()),
             faces: faces(mesh),
         }
@@ -59,9 +61,12 @@ impl Twin {
     }
 
     /// The mean normal of the drawn leaves, by its length, or the nearest
-    /// point's; its material.
+    /// point's, as all are where that is asked for; its material.
     fn check_attribute(&self, depth: usize, cell: &Cell, below: &[(usize, &Cell)]) {
         let axis = self.axis(depth);
+        if self.normals == Normals::Nearest {
+            return check_sample(&self.faces, cell.place, axis, cell.attribute);
+        }
         let leaves = below
             .iter()
             .filter(|(_, cell)| cell.record.is_empty() && cell.is_drawn);
@@ -184,6 +189,18 @@ fn curved_shapes_have_the_twins_filtered_samples_and_cones() {
                 assert!(2 * exact > all, "{name}, {options:?}: {exact} of {all}");
             }
         }
+    }
+}
+
+#[test]
+fn nearest_normals_stay_and_have_cones_of_their_own() {
+    for (rho, level) in LEVELS {
+        let options = GridOptions {
+            normals: Normals::Nearest,
+            ..thin(rho, level)
+        };
+        let (exact, all) = check("torus", &torus(), &options);
+        assert!(2 * exact > all, "{options:?}: {exact} of {all}");
     }
 }
 

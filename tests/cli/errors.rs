@@ -47,6 +47,7 @@ fn wrong_usage_is_exit_code_2() {
         "bake cube.obj -o a.rho --rho 5 --level 6",
         "bake cube.obj -o a.rho --up w",
         "bake cube.obj -o a.rho --shell soft",
+        "bake cube.obj -o a.rho --normals bent",
         "bake cube.obj -o a.rho --attributes 20",
         "bake cube.obj -o a.rho --max-bytes lots",
         "render cube.obj",
@@ -128,6 +129,29 @@ fn missing_and_foreign_inputs_are_named() {
     ] {
         fails(&folder, line, parts);
     }
+}
+
+#[test]
+fn reports_that_cannot_be_made_say_so_before_the_work() {
+    let folder = Folder::new();
+    is_wrong_usage(&folder, "report --quick --models .");
+    is_wrong_usage(&folder, "report cube.obj");
+    for (line, parts) in [
+        ("report --models .", ["holds no model", "; give"]),
+        ("report --models none", ["none: ", "bunny.ply"]),
+        (
+            "report --quick --out cube.obj",
+            ["cube.obj: ", "; name a folder"],
+        ),
+        (
+            "report --quick --machine m3",
+            ["targets/run", "; start from"],
+        ),
+    ] {
+        fails(&folder, line, &parts);
+    }
+    folder.write("bunny.ply", "ply\nformat none\n");
+    fails(&folder, "report --models .", &["bunny.ply:2: ", "; "]);
 }
 
 #[test]
@@ -299,6 +323,7 @@ fn inputs_are_not_replaced_and_links_stay_links() {
         "--rho 2",
         "--level 1",
         "--shell fat",
+        "--normals nearest",
         "--up y",
         "--two-sided",
     ] {

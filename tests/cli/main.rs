@@ -108,6 +108,7 @@ fn help_and_version_go_to_stdout() {
         "render -h",
         "info --help",
         "compare --help",
+        "report --help",
     ] {
         assert!(!folder.done(line).is_empty(), "{line}");
     }
