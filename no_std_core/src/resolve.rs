@@ -6,9 +6,10 @@
 //! or across, that are both nearer than it by a few cells. Of several such
 //! pairs the one counts whose deeper pixel is nearest; the hole takes its mean
 //! colour. Where pixels are missed side by side, half of a hole's eight
-//! neighbours are nearer, one of them to the left or above, though no two are
-//! opposite: then it lies between the one above and the second one below, or
-//! the other way round. A gap of one pixel that is really there is closed, too.
+//! neighbours are nearer, some to the left or above and some on the other
+//! side, though no two are opposite: then it lies between the one above and the
+//! second one below, or the other way round. A gap of one pixel that is really
+//! there is closed, too.
 
 use crate::canvas::{Canvas, PITCH};
 use crate::shade::Shader;
@@ -29,6 +30,10 @@ type Neighbourhood = [u32; 4 * PITCH + 3];
 
 /// Where the pixel itself is.
 const OWN: usize = 2 * PITCH + 1;
+
+/// From a pixel to one of two opposite neighbours, behind it; the other is
+/// before it.
+const OPPOSITE: [usize; 4] = [1, PITCH, PITCH + 1, PITCH - 1];
 
 /// Writes a strip's colours, and depths where they are asked for.
 pub(crate) fn resolve(
@@ -100,20 +105,30 @@ fn row_of(words: &[u32], gap: Gap, colours: &mut [u16], colour_of: impl Fn(u32) 
     }
 }
 
-/// Most pixels are far from any hole: of each pair, the neighbour to the left
-/// or above is not nearer than by the least gap, and nothing else is looked at.
+/// Most pixels are far from any hole: on one of both sides no neighbour is
+/// nearer than by the least gap, and nothing else is looked at.
 #[inline(always)]
 fn pixel(around: &Neighbourhood, gap: Gap, colour_of: &impl Fn(u32) -> u16) -> u16 {
     let own = around[OWN];
     let least = gap.least(own);
-    let ahead = [1, PITCH + 1, PITCH, PITCH - 1].map(|before| around[OWN - before]);
-    if ahead.into_iter().all(|word| word <= least) {
+    let before = OPPOSITE.map(|offset| around[OWN - offset]);
+    if before.into_iter().all(|word| word <= least) {
         return colour_of(own);
     }
-    match hole(around, gap) {
+    let behind = OPPOSITE.map(|offset| around[OWN + offset]);
+    if behind.into_iter().all(|word| word <= least) {
+        return colour_of(own);
+    }
+    match closing(around, gap) {
         None => colour_of(own),
         Some([first, second]) => mean(colour_of(first), colour_of(second)),
     }
+}
+
+/// [`hole`], out of the way of the many pixels that are none.
+#[inline(never)]
+fn closing(around: &Neighbourhood, gap: Gap) -> Option<[u32; 2]> {
+    hole(around, gap)
 }
 
 fn depth_row(words: &[u32], repair: Option<Gap>, depths: &mut [u16]) {
@@ -149,25 +164,23 @@ impl Gap {
     }
 }
 
-/// The two pixels that close a hole, if it is one: see the module. Of equally
-/// deep pairs the first counts.
-#[inline(never)]
+/// The two pixels that close a hole, if it is one: see the module.
+#[inline(always)]
 fn hole(around: &Neighbourhood, gap: Gap) -> Option<[u32; 2]> {
     let limit = gap.limit(around[OWN]);
-    let (mut closing, mut nearest) = (None, limit);
     let (mut before, mut behind) = (0, 0);
-    for offset in [1, PITCH, PITCH + 1, PITCH - 1] {
-        let pair = [around[OWN - offset], around[OWN + offset]];
-        let deeper = pair[0].min(pair[1]);
-        if deeper > nearest {
-            nearest = deeper;
-            closing = Some(pair);
-        }
-        before += u32::from(pair[0] > limit);
-        behind += u32::from(pair[1] > limit);
+    let mut is_between = false;
+    for offset in OPPOSITE {
+        let is_nearer = [around[OWN - offset] > limit, around[OWN + offset] > limit];
+        is_between |= is_nearer == [true; 2];
+        before += u32::from(is_nearer[0]);
+        behind += u32::from(is_nearer[1]);
     }
-    if closing.is_some() || before == 0 || before + behind < 4 {
-        return closing;
+    if is_between {
+        return Some(closest(around));
+    }
+    if before == 0 || behind == 0 || before + behind < 4 {
+        return None;
     }
     let long = [
         [around[OWN - PITCH], around[OWN + 2 * PITCH]],
@@ -175,6 +188,22 @@ fn hole(around: &Neighbourhood, gap: Gap) -> Option<[u32; 2]> {
     ];
     long.into_iter()
         .find(|&[above, below]| above > limit && below > limit)
+}
+
+/// The opposite neighbours whose deeper one is nearest; of equally deep pairs
+/// the first counts.
+#[inline(never)]
+fn closest(around: &Neighbourhood) -> [u32; 2] {
+    let pairs = OPPOSITE.map(|offset| [around[OWN - offset], around[OWN + offset]]);
+    let (mut closest, mut nearest) = ([0; 2], 0);
+    for pair in pairs {
+        let deeper = pair[0].min(pair[1]);
+        if deeper > nearest {
+            nearest = deeper;
+            closest = pair;
+        }
+    }
+    closest
 }
 
 /// The mean of two RGB565 colours, each channel rounded down.

@@ -37,7 +37,11 @@ fn shown(words: &[Vec<u32>], x: usize, y: usize, gap: Gap) -> Vec<u32> {
     });
     let nearer: Vec<[i32; 2]> = nearer.collect();
     let is_before = |&[dx, dy]: &[i32; 2]| dy < 0 || dy == 0 && dx < 0;
-    if best.is_none() && nearer.len() >= 4 && nearer.iter().any(is_before) {
+    if best.is_none()
+        && nearer.len() >= 4
+        && nearer.iter().any(is_before)
+        && !nearer.iter().all(is_before)
+    {
         let pairs = [[at(x, y - 1), at(x, y + 2)], [at(x, y - 2), at(x, y + 1)]];
         let closes = |pair: &[u64; 2]| pair.iter().all(|&word| word > needed(own));
         best = pairs.into_iter().find(closes);
