@@ -24,6 +24,7 @@ pub static CASES: &[Case] = &[
     Case { name: "demo, level 4", input: "builtin:demo", baking: "--level 4", drawing: "" },
     Case { name: "bunny, level 5", input: "bunny.ply", baking: "--level 5", drawing: "" },
     Case { name: "buddha, level 5", input: "buddha_100k.ply", baking: "--level 5 --up z", drawing: "" },
+    Case { name: "buddha, level 4, every leaf a point", input: "buddha_100k.ply", baking: "--level 4 --up z", drawing: "--culling off --splat 0" },
 ];
 
 /// What a test of this program can wait for.

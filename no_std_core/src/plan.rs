@@ -67,6 +67,8 @@ pub struct Plan {
     /// Whether cells are tested for facing away: not where every surface is
     /// drawn from both sides.
     pub(crate) faces: bool,
+    /// Whether samples that face away are drawn like any other.
+    pub(crate) shows_all: bool,
     /// Whether cells are tested against the picture's sides: not where it
     /// holds the cube. Strips of it have sides of their own.
     pub(crate) culls: bool,
@@ -113,7 +115,8 @@ impl Plan {
             levels,
             depth,
             repair: quality.repair.then(|| lens.gap(projection, quality)),
-            faces: !grid.two_sided(),
+            faces: quality.culling && !grid.two_sided(),
+            shows_all: !quality.culling,
             culls: !projection.holds_cube(picture),
             range,
             w_scale: projection.w_scale,

@@ -278,6 +278,15 @@ pub enum RepairChoice {
     Off,
 }
 
+/// What becomes of what faces away.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum CullingChoice {
+    /// It is left out
+    On,
+    /// It is drawn like everything else, to measure what samples cost
+    Off,
+}
+
 /// Light and knobs of a frame.
 #[derive(Clone, Debug, Args)]
 pub struct QualityArgs {
@@ -303,6 +312,9 @@ pub struct QualityArgs {
     /// What becomes of pixels that points have missed
     #[arg(long, value_enum, default_value = "on")]
     pub repair: RepairChoice,
+    /// What becomes of what faces away
+    #[arg(long, value_enum, default_value = "on")]
+    pub culling: CullingChoice,
     /// Shadows; for --reference alone, which traces rays
     #[arg(long, value_enum, default_value = "off")]
     pub shadows: ShadowChoice,

@@ -9,7 +9,7 @@ use rhogrid_core::numbers::{FocalPx, Length, SplatPx, Turns, Unit, Weight};
 use rhogrid_core::stats::Stats;
 use rhogrid_core::target::{Target, canvas_len, frame_hash};
 
-use super::args::{PathChoice, QualityArgs, RepairChoice, ShadowChoice, ViewArgs};
+use super::args::{CullingChoice, PathChoice, QualityArgs, RepairChoice, ShadowChoice, ViewArgs};
 use crate::bake::Cube;
 use crate::picture::Picture;
 use crate::view::{Light, View};
@@ -118,6 +118,7 @@ pub fn core_quality(quality: &QualityArgs) -> Quality {
             PathChoice::Affine => SplatPx::MAX,
         },
         repair: quality.repair == RepairChoice::On,
+        culling: quality.culling == CullingChoice::On,
     }
 }
 

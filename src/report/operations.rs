@@ -56,6 +56,7 @@ const FRAMES: [(&str, Shell, Quality); 3] = [
             splat: SplatPx::ZERO,
             distortion: SplatPx::ZERO,
             repair: true,
+            culling: true,
         },
     ),
     (
@@ -65,6 +66,7 @@ const FRAMES: [(&str, Shell, Quality); 3] = [
             splat: SplatPx::ZERO,
             distortion: Quality::DISTORTION,
             repair: true,
+            culling: true,
         },
     ),
     (
@@ -74,6 +76,7 @@ const FRAMES: [(&str, Shell, Quality); 3] = [
             splat: Quality::SPLAT,
             distortion: Quality::DISTORTION,
             repair: true,
+            culling: true,
         },
     ),
 ];

@@ -204,6 +204,7 @@ impl Buffers {
             splat: random.pick(&SPLATS),
             distortion: random.pick(&[SplatPx::ZERO, Quality::DISTORTION, SplatPx::MAX]),
             repair: random.pick(&[true, false]),
+            culling: random.pick(&[true, false]),
         };
         let band = band(random);
         let pixels = band.pixels();

@@ -27,6 +27,7 @@ fn quality(splat: f64) -> Quality {
         splat: SplatPx::from_num(splat),
         distortion: SplatPx::ZERO,
         repair: false,
+        culling: true,
     }
 }
 
@@ -36,6 +37,7 @@ fn packed(distortion: f64) -> Quality {
         splat: SplatPx::ZERO,
         distortion: SplatPx::from_num(distortion),
         repair: false,
+        culling: true,
     }
 }
 
@@ -397,7 +399,11 @@ fn what_the_plan_leaves_out_is_not_done() {
                 looking(eye, back.map(|c| -c), upwards, 60.0, 64, 64)
             }
         };
-        let (quality, band) = (Quality::default(), whole(&camera));
+        let band = whole(&camera);
+        let quality = Quality {
+            culling: rng.u8(..) >= 64,
+            ..Quality::default()
+        };
         let plan = Plan::new(&grid, &camera, &quality);
         let rows = camera.height;
         let stats = frame_of(&grid, &camera, &AMBIENT, &quality, band, rows, &mut []).stats;
@@ -406,6 +412,7 @@ fn what_the_plan_leaves_out_is_not_done() {
         assert!(plan.culls || tests[0] == 0, "{case}");
         assert!(plan.faces || tests[1] == 0, "{case}");
         assert!(plan.culls || stats.nodes_outside == 0, "{case}");
+        assert!(plan.faces || stats.nodes_back_facing == 0, "{case}");
         without_sides += u32::from(!plan.culls && stats.nodes_visited > 1);
         without_faces += u32::from(!plan.faces && stats.nodes_visited > 1);
     }

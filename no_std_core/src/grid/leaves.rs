@@ -28,7 +28,10 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
             return;
         };
         let extents = self.tables.extents(cell.depth);
-        let facing = cone(record.flags, attribute, cell.view, extents.eye_radius);
+        let facing = match self.plan.shows_all {
+            true => Facing::Toward,
+            false => cone(record.flags, attribute, cell.view, extents.eye_radius),
+        };
         if facing == Facing::Away {
             return;
         }

@@ -52,9 +52,10 @@ impl Display for Plan {
             false => "the picture holds the cube, no cell is tested",
         };
         writeln!(f, "sides    {sides}")?;
-        let facing = match self.faces {
-            true => "cones that face away are skipped",
-            false => "two-sided, no cone is tested",
+        let facing = match (self.faces, self.shows_all) {
+            (true, _) => "cones that face away are skipped",
+            (false, true) => "culling is off, no cone is tested",
+            (false, false) => "two-sided, no cone is tested",
         };
         writeln!(f, "facing   {facing}")?;
         let materials = self.materials;

@@ -97,6 +97,7 @@ impl Variant {
             splat: SplatPx::from_num(splat),
             distortion: self.distortion,
             repair: true,
+            culling: true,
         }
     }
 

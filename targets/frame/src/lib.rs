@@ -9,7 +9,7 @@
 //!       1  version                       8  light towards x, y, z
 //!       2  file length, bytes           11  ambient, diffuse
 //!       3  width | height << 16         13  splat, distortion
-//!       4  view count                   15  repair: 0 or 1
+//!       4  view count                   15  repair | culling << 1
 //!       5  first view, byte offset      16  views: 2 cameras each,
 //!       6  asset, byte offset               then the asset
 //! camera: eye x, y, z (2 words each, low first), right, up, forward x, y, z,
@@ -37,7 +37,7 @@ pub use write::write;
 pub const MAGIC: u32 = u32::from_le_bytes(*b"RHFR");
 
 /// Version that this crate reads and writes.
-pub const VERSION: u32 = 2;
+pub const VERSION: u32 = 3;
 
 /// Words of the header.
 const HEADER_WORDS: usize = 16;

@@ -67,10 +67,13 @@ impl<'a> Frame<'a> {
             ambient: Weight::from_bits(header.word()),
             diffuse: Weight::from_bits(header.word()),
         };
+        let [splat, distortion] = [0; 2].map(|_| SplatPx::from_bits(header.word()));
+        let switches = header.word();
         let quality = Quality {
-            splat: SplatPx::from_bits(header.word()),
-            distortion: SplatPx::from_bits(header.word()),
-            repair: header.word() != 0,
+            splat,
+            distortion,
+            repair: switches & 1 != 0,
+            culling: switches & 2 != 0,
         };
         let settings = Settings {
             width: (size & 0xffff) as u16,

@@ -37,7 +37,7 @@ pub fn write(
         light.diffuse.to_bits(),
         settings.quality.splat.to_bits(),
         settings.quality.distortion.to_bits(),
-        u32::from(settings.quality.repair),
+        u32::from(settings.quality.repair) | u32::from(settings.quality.culling) << 1,
     ];
     for word in header {
         put(&word.to_le_bytes());

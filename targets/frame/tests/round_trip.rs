@@ -20,6 +20,7 @@ fn settings() -> Settings {
             splat: SplatPx::from_bits(0x8001_0002),
             distortion: SplatPx::from_bits(0x2345),
             repair: false,
+            culling: true,
         },
     }
 }

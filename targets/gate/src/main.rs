@@ -104,6 +104,7 @@ fn draw_unknown(target: Option<Target<'_>>) {
         splat: black_box(SplatPx::ZERO),
         distortion: black_box(SplatPx::ZERO),
         repair: black_box(true),
+        culling: black_box(true),
     };
     black_box(grid.radius());
     black_box(shades_len(grid.materials().len()));
