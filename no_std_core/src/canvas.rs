@@ -47,7 +47,8 @@ pub(crate) const fn canvas_rows(words: usize) -> usize {
 /// Zeroes words.
 #[inline(never)]
 pub(crate) fn clear(words: &mut [u32]) {
-    // Zeros that the compiler does not know are stored eight at a time.
+    // Zeros that the compiler does not know are stored eight at a time, and the
+    // last ones without a call.
     let zeros = black_box([0; 8]);
     let (blocks, rest) = words.as_chunks_mut::<64>();
     for block in blocks {
@@ -59,7 +60,9 @@ pub(crate) fn clear(words: &mut [u32]) {
     for eight in eights {
         *eight = zeros;
     }
-    rest.fill(0);
+    for word in rest {
+        *word = zeros[0];
+    }
 }
 
 /// A strip of the picture on the canvas.

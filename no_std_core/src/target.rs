@@ -167,9 +167,11 @@ pub(crate) fn blank(pixels: &mut [u16]) {
         return;
     }
     let (first, words, last) = bytemuck::pod_align_to_mut::<u16, u32>(pixels);
-    first.fill(0);
+    // At most one on either side.
+    for pixel in first.iter_mut().chain(last).take(2) {
+        *pixel = 0;
+    }
     clear(words);
-    last.fill(0);
 }
 
 impl Picture<'_> {

@@ -114,17 +114,20 @@ pub(super) struct Affine {
 
 impl Affine {
     /// To be filled.
-    pub const EMPTY: Self = Self {
-        leaves: Subcells::EMPTY,
-        blocks: Subcells::EMPTY,
-        brush: Brush::Point,
-        reach: Reach {
-            x: 0,
-            y: 0,
-            depth: 0,
-        },
-        far_side: 0,
-    };
+    #[inline(always)]
+    pub fn blank() -> Self {
+        Self {
+            leaves: Subcells::blank(),
+            blocks: Subcells::blank(),
+            brush: Brush::Point,
+            reach: Reach {
+                x: 0,
+                y: 0,
+                depth: 0,
+            },
+            far_side: 0,
+        }
+    }
 }
 
 /// Fraction bits of dw / w.

@@ -12,6 +12,8 @@
 //! its field. Shifted right by 20 and masked, a place is the pixel's index in
 //! the window; shifted left by 16 it is what the canvas compares.
 
+use core::hint::black_box;
+
 use super::affine::Affine;
 use super::mask::{self, MAX_WORDS, Mask, SLOTS, Walk, slabs, slot};
 use super::normals::Normals;
@@ -78,10 +80,16 @@ pub(super) struct Subcells {
 }
 
 impl Subcells {
-    pub const EMPTY: Self = Self {
-        cells: [0; SLOTS],
-        words: [0; MAX_WORDS],
-    };
+    /// To be filled. Of a word that the compiler does not know: zeros would be
+    /// stored by a call that costs more than the filling.
+    #[inline(always)]
+    pub fn blank() -> Self {
+        let word = black_box(0);
+        Self {
+            cells: [word; SLOTS],
+            words: [word; MAX_WORDS],
+        }
+    }
 
     /// Fills the table from the steps between neighbours along x, y and z.
     #[inline(always)]

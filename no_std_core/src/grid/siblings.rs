@@ -26,7 +26,7 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
         let inverse = reciprocal(cell.centre.w as u32);
         let place = Place::of(self.projection, cell.centre, inverse);
         let bottom = cell.depth + 1 + SPAN as u8;
-        let mut affine = Affine::EMPTY;
+        let mut affine = Affine::blank();
         let at = (&place, inverse);
         if !self.map_around::<RHO, SPAN>(cell, at, bottom, normals, &mut affine) {
             return false;

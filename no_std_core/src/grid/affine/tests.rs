@@ -49,7 +49,7 @@ fn two_levels<const RHO: u8>(seed: u64) {
         tried += 1;
         let start = place.step().packed_in_window();
         let start = start.wrapping_add(brush.offset());
-        let mut affine = Affine::EMPTY;
+        let mut affine = Affine::blank();
         affine.blocks.fill::<RHO>(&steps.times(rho).0);
         affine.leaves.fill::<RHO>(&steps.0);
         let cells = 0..RHO.pow(3);
