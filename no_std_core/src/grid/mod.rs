@@ -7,6 +7,7 @@
 
 mod affine;
 mod clip;
+mod decoded;
 mod facing;
 mod footprint;
 mod leaves;

@@ -16,7 +16,7 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
     /// Draws what lies SPAN levels below the children of a cell. `false`, with
     /// nothing done, if such subtrees do not fit a window.
     #[inline(never)]
-    pub(super) fn siblings<const RHO: u8, const SPAN: usize>(
+    pub(super) fn siblings<const RHO: u8, const SPAN: usize, const CODED: bool>(
         &self,
         cell: &Cell,
         record: Record<'_>,
@@ -34,7 +34,7 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
         let radius = |depth| self.tables.extents(depth).eye_radius;
         let around = Around::new(cell.view, radius(cell.depth), radius(cell.depth + 1));
         let (stop, above) = (self.plan.stop(bottom), self.plan.stop(bottom - 1));
-        self.for_each_child::<RHO>(cell, record, |child, record, attribute| {
+        self.for_each_child::<RHO, CODED>(cell, record, |child, record, attribute| {
             let last = record.drawn.last().copied().unwrap_or(0);
             let flags = Flags::from_last(RHO, last);
             let normals = around.normals(child.view);

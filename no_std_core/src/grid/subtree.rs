@@ -1,6 +1,7 @@
 //! Packed subtrees: from an exactly projected cell down to points.
 
 use super::affine::Affine;
+use super::decoded::coding;
 use super::facing::Facing;
 use super::footprint::Place;
 use super::lists::{self, COUNTS, LISTS, Mask};
@@ -66,6 +67,9 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
         let (queue, stats) = (&mut *output.queue, &mut *output.stats);
         let blocks = match (SPAN, subtree.facing) {
             (1, _) => block::<RHO>(subtree, start, queue),
+            _ if coding::<RHO>(self.grid, cell).is_some() => {
+                self.coded_blocks::<RHO>(subtree, start, queue, stats)
+            }
             (_, Facing::Toward) => self.blocks::<RHO, false>(subtree, start, queue, stats),
             _ => self.blocks::<RHO, true>(subtree, start, queue, stats),
         };
@@ -127,6 +131,58 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
         stats.nodes_visited += visited;
         stats.nodes_back_facing += visited - kept as u32;
         stats.facing_tests += if FACES { visited } else { 0 };
+        queue.get(..kept).unwrap_or(&[])
+    }
+
+    /// [`Self::blocks`] where the children's records are coded: how many cells
+    /// a mask has is known without it.
+    #[inline(never)]
+    fn coded_blocks<'q, const RHO: u8>(
+        &self,
+        subtree: &Subtree<'_>,
+        start: u32,
+        queue: &'q mut [Block],
+        stats: &mut Stats,
+    ) -> &'q [Block] {
+        let Subtree { cell, record, .. } = *subtree;
+        let faces = subtree.facing != Facing::Toward;
+        let below = usize::from(cell.depth) + 1;
+        let levels = self.grid.levels();
+        let (Some(level), Some(next)) = (levels.get(below), levels.get(below + 1)) else {
+            return &[];
+        };
+        let Some(coding) = coding::<RHO>(self.grid, cell) else {
+            return &[];
+        };
+        let (normals, blocks) = (*subtree.normals, &subtree.affine.blocks);
+        let count = place_children::<RHO>(record, start, blocks, queue);
+        let from = cell.first_child;
+        let [axes, nodes, drawn] = [level.attributes, next.nodes, next.drawn]
+            .map(|words| words.get(from..).unwrap_or(&[]).iter());
+        let children = axes.zip(nodes.zip(drawn)).take(count);
+        let mut first = coding.link(cell.index);
+        let mut kept = 0;
+        for (index, (&axis, (&node, &drawn))) in children.enumerate() {
+            let (cells, flags) = coding.node(node, from + index);
+            let is_away = faces && normals.is_away(Flags::from_word(flags), axis);
+            // Kept blocks move up: none is overwritten before it is read.
+            if !is_away
+                && let Some(&Block { place, .. }) = queue.get(index)
+                && let Some(block) = queue.get_mut(kept)
+            {
+                *block = Block {
+                    place,
+                    record: coding.drawn(drawn, from + index),
+                    first,
+                };
+                kept += 1;
+            }
+            first += cells;
+        }
+        let visited = count as u32;
+        stats.nodes_visited += visited;
+        stats.nodes_back_facing += visited - kept as u32;
+        stats.facing_tests += if faces { visited } else { 0 };
         queue.get(..kept).unwrap_or(&[])
     }
 }

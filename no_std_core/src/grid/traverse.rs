@@ -8,6 +8,7 @@
 //! ([`super::packed`]) where that is exact enough.
 
 use super::clip::{Clip, Side};
+use super::decoded::{AsRecord, coding, coding_of, decoded};
 use super::facing::EyeSpace;
 use super::footprint::{Place, is_beside, near_limit};
 use super::lists::{self, COUNTS, LISTS, Mask};
@@ -63,7 +64,7 @@ pub(super) struct Record<'a> {
     pub drawn: &'a [u16],
 }
 
-/// The records of a level, from a cell on.
+/// The records of a plain level, from a cell on.
 pub(super) fn records<'a, const RHO: u8>(
     level: &Level<'a>,
     first: usize,
@@ -144,7 +145,13 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
         };
         match next {
             Some(next) if self.plan.depth > 0 => {
-                if let Some(record) = records::<RHO>(next, 0).next() {
+                let decoded = coding_of::<RHO>(self.grid, 1)
+                    .and_then(|coding| decoded(next, coding, 0).next());
+                let record = match &decoded {
+                    None => records::<RHO>(next, 0).next(),
+                    Some(pair) => Some(pair.as_record()),
+                };
+                if let Some(record) = record {
                     self.node::<RHO>(root, record, attribute, output);
                 }
             }
@@ -221,15 +228,47 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
         }
         let is_drawn = if stops(2) {
             packs(2) && self.packed::<RHO, 2>(cell, record, attribute, normals, output)
-                || shares(1) && self.siblings::<RHO, 1>(cell, record, normals, output)
+                || shares(1) && self.share::<RHO, 1>(cell, record, normals, output)
         } else {
-            stops(3) && shares(2) && self.siblings::<RHO, 2>(cell, record, normals, output)
+            stops(3) && shares(2) && self.share::<RHO, 2>(cell, record, normals, output)
         };
-        if !is_drawn {
-            self.for_each_child::<RHO>(cell, record, |child, record, attribute| {
-                self.node::<RHO>(&child, record, attribute, output);
-            });
+        if is_drawn {
+            return;
         }
+        if coding::<RHO>(self.grid, cell).is_some() {
+            return self.visit_coded::<RHO>(cell, record, output);
+        }
+        self.for_each_child::<RHO, false>(cell, record, |child, record, attribute| {
+            self.node::<RHO>(&child, record, attribute, output);
+        });
+    }
+
+    /// Children of both kinds of levels, each compiled by itself: plain ones do
+    /// not pay for coded ones.
+    #[inline(always)]
+    fn share<const RHO: u8, const SPAN: usize>(
+        &self,
+        cell: &Cell,
+        record: Record<'_>,
+        normals: &Normals,
+        output: &mut Output<'_, '_>,
+    ) -> bool {
+        match coding::<RHO>(self.grid, cell) {
+            None => self.siblings::<RHO, SPAN, false>(cell, record, normals, output),
+            Some(_) => self.siblings::<RHO, SPAN, true>(cell, record, normals, output),
+        }
+    }
+
+    #[inline(never)]
+    fn visit_coded<const RHO: u8>(
+        &self,
+        cell: &Cell,
+        record: Record<'_>,
+        output: &mut Output<'_, '_>,
+    ) {
+        self.for_each_child::<RHO, true>(cell, record, |child, record, attribute| {
+            self.node::<RHO>(&child, record, attribute, output);
+        });
     }
 
     /// Where a cell lies. Of cells next to the eye the strip tells nothing, but
@@ -249,24 +288,47 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
     /// their records and attributes: in file order, first those that are drawn
     /// at their depth, then the others.
     #[inline(always)]
-    pub(super) fn for_each_child<'r, const RHO: u8>(
-        &'r self,
+    pub(super) fn for_each_child<const RHO: u8, const CODED: bool>(
+        &self,
         cell: &Cell,
         record: Record<'_>,
-        mut visit: impl FnMut(Cell, Record<'r>, u16),
+        visit: impl FnMut(Cell, Record<'_>, u16),
+    ) {
+        let (next, first) = (usize::from(cell.depth) + 2, cell.first_child);
+        let Some(level) = self.grid.levels().get(next) else {
+            return;
+        };
+        if CODED {
+            let Some(coding) = coding::<RHO>(self.grid, cell) else {
+                return;
+            };
+            let (link, records) = (coding.link(cell.index), decoded(level, coding, first));
+            self.for_each_of::<RHO, _>((cell, record), records, link, visit);
+        } else {
+            let link = level.links.get(cell.index).copied().unwrap_or(0);
+            let records = records::<RHO>(level, first);
+            self.for_each_of::<RHO, _>((cell, record), records, link, visit);
+        }
+    }
+
+    /// The same with the children's records and the link to theirs.
+    #[inline(always)]
+    fn for_each_of<const RHO: u8, R: AsRecord>(
+        &self,
+        (cell, record): (&Cell, Record<'_>),
+        records: impl Iterator<Item = R>,
+        link: u32,
+        mut visit: impl FnMut(Cell, Record<'_>, u16),
     ) {
         let table = self.tables.below(cell.depth);
         let below = usize::from(cell.depth) + 1;
         let levels = self.grid.levels();
-        let (Some(level), Some(next)) = (levels.get(below), levels.get(below + 1)) else {
+        let Some(level) = levels.get(below) else {
             return;
         };
         let attributes = level.attributes.get(cell.first_child..).unwrap_or(&[]);
-        let mut children = attributes
-            .iter()
-            .zip(records::<RHO>(next, cell.first_child))
-            .zip(cell.first_child..);
-        let mut first_child = next.links.get(cell.index).copied().unwrap_or(0) as usize;
+        let mut children = attributes.iter().zip(records).zip(cell.first_child..);
+        let mut first_child = link as usize;
         let cells = lists::chunk_rows(RHO) * usize::from(RHO);
         for mask in lists::in_file_order::<RHO>(record.node, record.drawn) {
             for chunk in 0..lists::chunks(RHO) {
@@ -289,6 +351,7 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
                         view: [0, 1, 2].map(|axis| cell.view[axis] + step[axis]),
                         inside: cell.inside,
                     };
+                    let record = record.as_record();
                     first_child += Mask::<RHO>::of(record.node).count() as usize;
                     visit(child, record, attribute);
                 }
