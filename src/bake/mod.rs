@@ -2,6 +2,7 @@
 //! through [`writer`].
 
 mod cone;
+mod dictionary;
 mod filter;
 mod finish;
 mod overlap;
@@ -49,6 +50,18 @@ pub struct GridOptions {
     /// Which source axis points up; the geometry is already turned, the asset
     /// remembers it.
     pub up: Up,
+    /// How masks are written.
+    pub masks: Masks,
+}
+
+/// How the masks of the finest levels are written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Masks {
+    /// As they are.
+    Plain,
+    /// As indices into a dictionary of the most frequent ones, where that
+    /// saves bytes. For tri-grids.
+    Dictionary,
 }
 
 impl Default for GridOptions {
@@ -60,6 +73,7 @@ impl Default for GridOptions {
             normals: Normals::Filtered,
             two_sided: false,
             up: Up::Y,
+            masks: Masks::Plain,
         }
     }
 }
@@ -79,7 +93,7 @@ pub struct Cube {
 /// and of how many there are at its depth.
 ///
 /// # Errors
-/// When rho or the level is out of range, or the geometry has no extent.
+/// When rho or the level is out of range, the masks are not rho's, or the geometry has no extent.
 pub fn grid(
     geometry: &Geometry,
     options: &GridOptions,
@@ -107,6 +121,7 @@ pub fn grid(
         shell: options.shell,
         two_sided: options.two_sided,
         up: options.up,
+        masks: options.masks,
         cube,
         materials: materials.iter().map(|material| material.diffuse).collect(),
     })
@@ -136,7 +151,9 @@ pub enum Progress {
 }
 
 fn depth_of(options: &GridOptions) -> Result<u8, Error> {
-    let GridOptions { rho, level, .. } = *options;
+    let GridOptions {
+        rho, level, masks, ..
+    } = *options;
     let fail = |what: String, remedy: String| {
         Err(Error {
             file: None,
@@ -156,6 +173,12 @@ fn depth_of(options: &GridOptions) -> Result<u8, Error> {
         return fail(
             format!("--level {level} is too deep for --rho {rho}"),
             format!("give at most {deepest}"),
+        );
+    }
+    if masks == Masks::Dictionary && rho != 3 {
+        return fail(
+            format!("--masks dictionary is not possible with --rho {rho}"),
+            "give --rho 3".into(),
         );
     }
     Ok(level + 1)

@@ -17,7 +17,7 @@ use super::finish::finish;
 use super::surface::{Aabb, Sample, Surface};
 use super::thin::{Standing, column, cross_hair, thin_subset};
 use super::touched::{Above, Touched, TouchedLevel};
-use super::{Cube, GridOptions, Progress, cone};
+use super::{Cube, GridOptions, Masks, Progress, cone};
 use crate::geometry::Up;
 
 /// Cells whose primitives are gathered in one piece of work.
@@ -36,6 +36,8 @@ pub struct BakedGrid {
     pub two_sided: bool,
     /// Which source axis pointed up.
     pub up: Up,
+    /// How masks are written.
+    pub masks: Masks,
     /// Where the grid lies in its source.
     pub cube: Cube,
     /// Diffuse colours, one to eight.

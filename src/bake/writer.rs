@@ -7,7 +7,7 @@ use rhogrid_core::asset::{
     SECTION_MATERIALS, Shell, VERSION, checksum,
 };
 
-use super::BakedGrid;
+use super::{BakedGrid, BakedLevel, Masks, dictionary};
 use crate::error::{Error, Place};
 use crate::geometry::Up;
 
@@ -16,8 +16,27 @@ use crate::geometry::Up;
 /// # Errors
 /// When the asset would not fit the format's 32-bit offsets.
 pub fn to_bytes(grid: &BakedGrid) -> Result<Vec<u8>, Error> {
+    let levels = linked(grid);
+    let sections = match grid.masks {
+        Masks::Plain => levels.iter().map(plain).collect(),
+        Masks::Dictionary => dictionary::smallest(&levels),
+    };
+    with_header(grid, sections)
+}
+
+/// Serializes a tri-grid with so many of its finest levels coded, whether
+/// that saves bytes or not.
+///
+/// # Errors
+/// When the asset would not fit the format's 32-bit offsets.
+pub fn to_coded_bytes(grid: &BakedGrid, levels: usize) -> Result<Vec<u8>, Error> {
+    let sections = dictionary::sections(&linked(grid), levels);
+    with_header(grid, sections)
+}
+
+fn with_header(grid: &BakedGrid, levels: Vec<(u32, Vec<u8>)>) -> Result<Vec<u8>, Error> {
     let mut sections = vec![(SECTION_MATERIALS, materials(grid))];
-    sections.extend(levels(grid).into_iter().map(|level| (SECTION_LEVEL, level)));
+    sections.extend(levels);
     let header_bytes = HEADER_BYTES + SECTION_BYTES * sections.len();
     let total = header_bytes
         + sections
@@ -121,7 +140,14 @@ fn materials(grid: &BakedGrid) -> Vec<u8> {
     bytes
 }
 
-fn levels(grid: &BakedGrid) -> Vec<Vec<u8>> {
+/// A level with its links.
+pub(super) struct Linked<'a> {
+    pub level: &'a BakedLevel,
+    /// The first grandchild of each cell two levels above.
+    pub links: Vec<u32>,
+}
+
+fn linked(grid: &BakedGrid) -> Vec<Linked<'_>> {
     let size = halves(grid.rho);
     let counts = |nodes: &[u16]| -> Vec<u32> {
         nodes
@@ -130,29 +156,42 @@ fn levels(grid: &BakedGrid) -> Vec<Vec<u8>> {
             .collect()
     };
     let mut above: Vec<u32> = Vec::new();
-    let mut sections = Vec::new();
+    let mut linked = Vec::new();
     for (depth, level) in grid.levels.iter().enumerate() {
         let own = counts(&level.nodes);
-        let mut bytes = (level.attributes.len() as u32).to_le_bytes().to_vec();
         // Siblings in each group: one root, then the children of each cell.
         let groups = if depth == 1 { vec![1] } else { above };
+        let mut links = Vec::new();
         let (mut first, mut cells) = (0usize, 0u32);
         for &siblings in groups.iter().take(if depth == 0 { 0 } else { usize::MAX }) {
-            bytes.extend(cells.to_le_bytes());
+            links.push(cells);
             let end = first + siblings as usize;
             cells += own[first..end].iter().sum::<u32>();
             first = end;
         }
-        extend_padded(&mut bytes, &level.nodes);
-        extend_padded(&mut bytes, &level.drawn);
-        extend_padded(&mut bytes, &level.attributes);
-        sections.push(bytes);
+        linked.push(Linked { level, links });
         above = own;
     }
-    sections
+    linked
 }
 
-fn extend_padded(bytes: &mut Vec<u8>, words: &[u16]) {
+/// A level as it is.
+pub(super) fn plain(linked: &Linked<'_>) -> (u32, Vec<u8>) {
+    let Linked { level, links } = linked;
+    let mut bytes = Vec::new();
+    extend_words(&mut bytes, &[level.attributes.len() as u32]);
+    extend_words(&mut bytes, links);
+    extend_padded(&mut bytes, &level.nodes);
+    extend_padded(&mut bytes, &level.drawn);
+    extend_padded(&mut bytes, &level.attributes);
+    (SECTION_LEVEL, bytes)
+}
+
+pub(super) fn extend_words(bytes: &mut Vec<u8>, words: &[u32]) {
+    bytes.extend(words.iter().flat_map(|word| word.to_le_bytes()));
+}
+
+pub(super) fn extend_padded(bytes: &mut Vec<u8>, words: &[u16]) {
     bytes.extend(words.iter().flat_map(|word| word.to_le_bytes()));
     bytes.resize(bytes.len().next_multiple_of(4), 0);
 }

@@ -9,7 +9,7 @@ use rhogrid_core::asset::{Shell, max_depth};
 use rhogrid_core::draw::Quality;
 
 use super::Failure;
-use crate::bake::{GridOptions, Normals};
+use crate::bake::{GridOptions, Masks, Normals};
 use crate::geometry::Up;
 
 /// What a mesh or cloud is baked into.
@@ -55,6 +55,24 @@ impl From<NormalChoice> for Normals {
     }
 }
 
+/// How masks are written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum MasksChoice {
+    /// As they are
+    Plain,
+    /// The finest levels' as indices into a dictionary, for less memory (rho 3)
+    Dictionary,
+}
+
+impl From<MasksChoice> for Masks {
+    fn from(choice: MasksChoice) -> Self {
+        match choice {
+            MasksChoice::Plain => Self::Plain,
+            MasksChoice::Dictionary => Self::Dictionary,
+        }
+    }
+}
+
 /// How wide a sample's attribute is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum AttributeChoice {
@@ -81,6 +99,9 @@ pub struct SourceArgs {
     /// Normals of intermediate samples [default: filtered]
     #[arg(long, value_enum)]
     pub normals: Option<NormalChoice>,
+    /// How masks are written [default: plain]
+    #[arg(long, value_enum)]
+    pub masks: Option<MasksChoice>,
     /// Which source axis points up [default: y]
     #[arg(long, value_enum)]
     pub up: Option<Up>,
@@ -96,9 +117,16 @@ impl SourceArgs {
     /// Checks what clap cannot.
     ///
     /// # Errors
-    /// When the level is too deep for rho.
+    /// When the level is too deep for rho, or the masks are not rho's.
     pub fn check(&self) -> Result<(), Failure> {
-        let GridOptions { rho, level, .. } = self.grid_options();
+        let GridOptions {
+            rho, level, masks, ..
+        } = self.grid_options();
+        if masks == Masks::Dictionary && rho != 3 {
+            return Err(Failure::Usage(format!(
+                "--masks dictionary is not possible with --rho {rho}; give --rho 3"
+            )));
+        }
         let deepest = max_depth(rho) - 1;
         if level > deepest {
             return Err(Failure::Usage(format!(
@@ -118,6 +146,7 @@ impl SourceArgs {
             ("--level", self.level.is_some()),
             ("--shell", self.shell.is_some()),
             ("--normals", self.normals.is_some()),
+            ("--masks", self.masks.is_some()),
             ("--up", self.up.is_some()),
             ("--two-sided", self.two_sided),
         ];
@@ -140,6 +169,7 @@ impl SourceArgs {
             normals: self.normals.map_or(defaults.normals, Normals::from),
             two_sided: self.two_sided,
             up: self.up.unwrap_or(defaults.up),
+            masks: self.masks.map_or(defaults.masks, Masks::from),
         }
     }
 }

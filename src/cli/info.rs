@@ -3,8 +3,9 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use rhogrid_core::asset::node::{halves, occupied};
-use rhogrid_core::asset::{Grid, Shell};
+use rhogrid_core::asset::coded::BASE_LINKS;
+use rhogrid_core::asset::node::occupied;
+use rhogrid_core::asset::{Grid, Level, Shell};
 use serde::Serialize;
 
 use super::Failure;
@@ -50,6 +51,9 @@ pub struct Description {
     /// Everything counted: masks, links, attributes, tables, header. A leaf
     /// sample is a drawn cell of the finest level.
     bits_per_leaf_sample: f64,
+    /// How masks are written: plain, or with a dictionary.
+    masks: &'static str,
+    coded: Option<Coded>,
 }
 
 /// Where an asset's bytes go.
@@ -57,13 +61,18 @@ pub struct Description {
 pub struct ByteCounts {
     /// Indices of first grandchildren.
     pub links: usize,
-    /// Node records: occupancy, cones.
+    /// Node records: occupancy, cones; or their codes.
     pub masks: usize,
-    /// Drawn records, where a level has some of its own.
+    /// Drawn records, where a level has some of its own; or their codes.
     pub drawn_masks: usize,
+    /// Masks that codes stand for.
+    pub dictionary: usize,
+    /// Records that no code stands for.
+    pub escapes: usize,
     /// Attributes of all samples.
     pub attributes: usize,
-    /// Header, section table, materials, counts and padding.
+    /// Header, section table, materials, counts, padding, small tables of
+    /// coded levels.
     pub rest: usize,
 }
 
@@ -71,30 +80,86 @@ impl ByteCounts {
     fn of(grid: &Grid<'_>, total: usize) -> Self {
         let levels = || grid.levels().iter();
         let words = |of: &[u16]| 2 * of.len();
-        let links = levels().map(|level| 4 * level.links.len()).sum();
+        let links = (0..grid.levels().len())
+            .map(|depth| link_bytes(grid, depth))
+            .sum();
         let masks = levels().map(|level| words(level.nodes)).sum();
         let drawn_masks = (0..)
             .zip(levels())
             .filter(|&(depth, _)| grid.stores_drawn(depth))
             .map(|(_, level)| words(level.drawn))
             .sum();
+        let dictionary = grid.dictionary().map_or(0, |masks| 4 * masks.len());
+        let escapes = 4 * escapes(grid);
         let attributes = levels().map(|level| words(level.attributes)).sum();
         Self {
             links,
             masks,
             drawn_masks,
+            dictionary,
+            escapes,
             attributes,
-            rest: total - links - masks - drawn_masks - attributes,
+            rest: total - links - masks - drawn_masks - dictionary - escapes - attributes,
         }
+    }
+}
+
+fn link_bytes(grid: &Grid<'_>, depth: usize) -> usize {
+    match grid.coding(depth) {
+        None => 4 * grid.levels()[depth].links.len(),
+        Some(coding) => 2 * coding.links() + 4 * coding.links().div_ceil(BASE_LINKS),
+    }
+}
+
+/// Records that no code stands for.
+fn escapes(grid: &Grid<'_>) -> usize {
+    let codings = (0..grid.levels().len()).filter_map(|depth| grid.coding(depth));
+    codings.map(|coding| coding.escapes()).sum()
+}
+
+/// What a file's coded masks are made of.
+#[derive(Debug, Serialize)]
+struct Coded {
+    /// Masks of the dictionary.
+    dictionary: usize,
+    /// Levels whose records are codes.
+    levels: Vec<i16>,
+    /// Those records, nodes and drawn ones.
+    records: usize,
+    /// Those of them that no code stands for.
+    escapes: usize,
+}
+
+impl Coded {
+    fn of(grid: &Grid<'_>) -> Option<Self> {
+        let dictionary = grid.dictionary()?.len();
+        let levels = (0u8..).zip(grid.levels());
+        let coded: Vec<_> = levels
+            .filter(|&(depth, _)| grid.coding(usize::from(depth)).is_some())
+            .collect();
+        let records = |&(depth, level): &(u8, &Level<'_>)| {
+            level.nodes.len() * (1 + usize::from(grid.stores_drawn(depth)))
+        };
+        Some(Self {
+            dictionary,
+            levels: coded
+                .iter()
+                .map(|&(depth, _)| i16::from(depth) - 1)
+                .collect(),
+            records: coded.iter().map(records).sum(),
+            escapes: escapes(grid),
+        })
     }
 }
 
 /// Drawn cells of every depth; the root is one.
 fn drawn_cells(grid: &Grid<'_>) -> Vec<usize> {
     let rho = grid.rho();
-    let below = grid.levels().iter().skip(1).map(|level| {
-        let records = level.drawn.chunks_exact(halves(rho));
-        records.map(|record| occupied(rho, record) as usize).sum()
+    let below = (1..grid.levels().len()).map(|depth| {
+        let records = grid.drawn_records(depth);
+        records
+            .map(|record| occupied(rho, record.halves()) as usize)
+            .sum()
     });
     std::iter::once(1).chain(below).collect()
 }
@@ -109,6 +174,7 @@ impl Description {
         let intermediate = all - cells.last().copied().unwrap_or(1);
         let leaves = drawn.last().copied().unwrap_or(1).max(1);
         let cube = asset.cube();
+        let coded = Coded::of(&grid);
         Self {
             kind: "grid",
             rho: grid.rho(),
@@ -131,6 +197,27 @@ impl Description {
             bytes_total: asset.bytes().len(),
             bytes: ByteCounts::of(&grid, asset.bytes().len()),
             bits_per_leaf_sample: asset.bytes().len() as f64 * 8.0 / leaves as f64,
+            masks: match coded {
+                None => "plain",
+                Some(_) => "dictionary",
+            },
+            coded,
+        }
+    }
+
+    /// How masks are written, for people.
+    fn masks_in_words(&self) -> String {
+        match &self.coded {
+            None => self.masks.into(),
+            Some(coded) => format!(
+                "{} of {}; levels {:?} have {} records, {} of them escapes ({:.2} %)",
+                self.masks,
+                coded.dictionary,
+                coded.levels,
+                coded.records,
+                coded.escapes,
+                100.0 * coded.escapes as f64 / coded.records.max(1) as f64
+            ),
         }
     }
 
@@ -183,9 +270,16 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
     ))?;
     let bytes = &description.bytes;
     super::say(format_args!(
-        "bytes      {} links, {} masks, {} drawn masks, {} attributes, {} rest",
-        bytes.links, bytes.masks, bytes.drawn_masks, bytes.attributes, bytes.rest
+        "bytes      {} links, {} masks, {} drawn masks, {} dictionary, {} escapes, {} attributes, {} rest",
+        bytes.links,
+        bytes.masks,
+        bytes.drawn_masks,
+        bytes.dictionary,
+        bytes.escapes,
+        bytes.attributes,
+        bytes.rest
     ))?;
+    super::say(format_args!("masks      {}", description.masks_in_words()))?;
     if let Some(alpha) = description.alpha {
         super::say(format_args!(
             "alpha      {alpha:.2} non-empty subcells a cell"

@@ -1,7 +1,7 @@
 //! The cells of an asset with their places, read from its node records.
 
 use rhogrid_core::asset::Grid;
-use rhogrid_core::asset::node::{Flags, halves};
+use rhogrid_core::asset::node::Flags;
 
 /// A cell of some depth.
 #[derive(Clone, Debug)]
@@ -27,7 +27,7 @@ impl Cell {
 pub fn cells(grid: &Grid<'_>) -> Vec<Vec<Cell>> {
     let rho = u32::from(grid.rho());
     let mut depths: Vec<Vec<Cell>> = Vec::new();
-    for level in grid.levels() {
+    for (depth, level) in grid.levels().iter().enumerate() {
         let mut places = Vec::new();
         let mut are_drawn = Vec::new();
         match depths.last_mut() {
@@ -36,11 +36,12 @@ pub fn cells(grid: &Grid<'_>) -> Vec<Vec<Cell>> {
                 are_drawn.push(true);
             }
             Some(parents) => {
-                let records = level.nodes.chunks_exact(halves(grid.rho()));
-                let drawn = level.drawn.chunks_exact(halves(grid.rho()));
+                let records = grid.node_records(depth);
+                let drawn = grid.drawn_records(depth);
                 assert_eq!(records.len(), parents.len());
                 assert_eq!(drawn.len(), parents.len());
                 for ((parent, record), drawn) in parents.iter_mut().zip(records).zip(drawn) {
+                    let (record, drawn) = (record.halves(), drawn.halves());
                     let first = places.len();
                     let has = |of: &[u16], bit: u32| of[bit as usize / 16] >> (bit % 16) & 1 == 1;
                     // Drawn children come first.

@@ -4,6 +4,7 @@
 mod cells;
 mod cones;
 mod counts;
+mod dictionary;
 mod extremes;
 mod filter;
 mod prefix;

@@ -106,6 +106,70 @@ fn thin_is_the_default_and_counted_in_full() {
     );
 }
 
+#[test]
+fn a_dictionary_of_masks_saves_bytes_and_is_told() {
+    let folder = Folder::new();
+    let plain = folder.json("bake builtin:demo -o plain.rho --level 4 --masks plain");
+    folder.json("bake builtin:demo -o default.rho --level 4");
+    let info = folder.json("bake builtin:demo -o a.rho --level 4 --masks dictionary");
+    assert_eq!(info, folder.json("info a.rho"));
+    let read = |name: &str| std::fs::read(folder.path(name)).unwrap();
+    assert!(read("plain.rho") == read("default.rho"));
+    assert_eq!(
+        (&plain["masks"], &plain["coded"]),
+        (&json!("plain"), &Value::Null)
+    );
+    assert_eq!(plain["bytes"]["dictionary"], 0);
+    assert_eq!(plain["bytes"]["escapes"], 0);
+    assert_eq!(info["masks"], "dictionary");
+    let bytes = read("a.rho");
+    assert_eq!(info["bytes_total"], bytes.len());
+    assert!(bytes.len() < read("plain.rho").len());
+    let number = |of: &Value| of.as_u64().unwrap();
+    let coded = &info["coded"];
+    assert_eq!(
+        number(&info["bytes"]["dictionary"]),
+        4 * number(&coded["dictionary"])
+    );
+    assert_eq!(
+        number(&info["bytes"]["escapes"]),
+        4 * number(&coded["escapes"])
+    );
+    assert!(number(&coded["escapes"]) < number(&coded["records"]));
+    assert!(coded["levels"].as_array().unwrap().contains(&json!(4)));
+    let parts: u64 = info["bytes"]
+        .as_object()
+        .unwrap()
+        .values()
+        .map(number)
+        .sum();
+    assert_eq!(parts, bytes.len() as u64);
+    assert_eq!(info["cells_per_depth"], plain["cells_per_depth"]);
+    let text = folder.done("info a.rho");
+    assert!(text.contains("masks      dictionary of "), "{text}");
+    assert!(folder.done("info plain.rho").contains("masks      plain"));
+    // The picture is the same.
+    folder.done("render a.rho -o a.png");
+    folder.done("render plain.rho -o plain.png");
+    assert!(read("a.png") == read("plain.png"));
+}
+
+#[test]
+fn a_dictionary_is_for_tri_grids_and_for_baking() {
+    let folder = Folder::new();
+    let wrong = folder.run("bake cube.obj -o a.rho --rho 4 --masks dictionary");
+    assert_eq!(wrong.code, 2);
+    assert!(wrong.stderr.contains("give --rho 3"), "{}", wrong.stderr);
+    folder.done("bake cube.obj -o a.rho --level 1");
+    let late = folder.run("render a.rho -o a.png --masks dictionary");
+    assert_eq!(late.code, 2);
+    assert!(
+        late.stderr.contains("--masks is for baking"),
+        "{}",
+        late.stderr
+    );
+}
+
 /// Where the level of a depth ends; materials stand before the levels.
 fn level_end(bytes: &[u8], depth: usize) -> usize {
     let entry = 64 + 16 * (depth + 1);

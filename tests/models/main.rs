@@ -81,6 +81,20 @@ fn bunny_has_the_cells_of_an_independent_voxelization() {
     assert!((8.5..=10.5).contains(&alpha), "alpha {alpha}");
 }
 
+/// Everything counted, a dictionary of masks takes two bits of 22.4 off.
+#[test]
+fn a_dictionary_takes_bits_off_the_bunny() {
+    for (options, most) in [("--shell fat", 20.5), ("--shell thin", 23.2)] {
+        let options = format!("--level 5 --masks dictionary {options}");
+        let Some(reports) = run("bake", "bunny.ply", &options) else {
+            return;
+        };
+        let bits = reports[0]["bits_per_leaf_sample"].as_f64().unwrap();
+        println!("bunny {options}: {bits:.2} bits a leaf sample");
+        assert!(bits <= most, "{bits}");
+    }
+}
+
 #[test]
 fn bunny_has_no_holes() {
     let Some(reports) = full_views("bunny.ply", "--level 5") else {

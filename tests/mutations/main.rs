@@ -7,6 +7,7 @@
 //! cannot reach past a slice, and the words on either side are compared all
 //! the same.
 
+mod layout;
 mod mutate;
 mod scene;
 
@@ -18,7 +19,8 @@ use rhogrid::bake::writer::seal;
 use rhogrid_core::asset::Grid;
 use rhogrid_core::numbers::Length;
 
-use mutate::{Layout, Mutant, Random};
+use layout::Layout;
+use mutate::{Mutant, Random};
 use scene::{Buffers, Drawn, INSIDE, OUTSIDE};
 
 const RUNS: u64 = 100_000;

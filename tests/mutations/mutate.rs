@@ -2,8 +2,11 @@
 
 use std::ops::Range;
 
+use rhogrid_core::asset::coded::{FIRST_ESCAPE, FLAGS};
 use rhogrid_core::asset::node::{flags_shift, halves};
-use rhogrid_core::asset::{HEADER_BYTES, SECTION_BYTES, SECTION_LEVEL, Shell};
+use rhogrid_core::asset::{HEADER_BYTES, SECTION_BYTES};
+
+use super::layout::{Layout, Level};
 
 /// Steele's splitmix64: any two seeds give unrelated sequences.
 pub struct Random(u64);
@@ -26,68 +29,6 @@ impl Random {
 
     pub fn pick<T: Copy>(&mut self, of: &[T]) -> T {
         of[self.below(of.len())]
-    }
-}
-
-/// An asset and where its parts lie.
-pub struct Layout {
-    pub name: &'static str,
-    pub bytes: Vec<u8>,
-    rho: u8,
-    levels: Vec<Level>,
-}
-
-struct Level {
-    links: Range<usize>,
-    nodes: Range<usize>,
-    /// Empty where the nodes are what is drawn.
-    drawn: Range<usize>,
-    attributes: Range<usize>,
-    end: usize,
-}
-
-impl Layout {
-    pub fn new(name: &'static str, rho: u8, shell: Shell, bytes: Vec<u8>) -> Self {
-        let word = |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().unwrap()) as usize;
-        let mut cells = vec![];
-        let mut levels = vec![];
-        for entry in (0..usize::from(bytes[15])).map(|index| HEADER_BYTES + SECTION_BYTES * index) {
-            if word(entry) != SECTION_LEVEL as usize {
-                continue;
-            }
-            let (start, length) = (word(entry + 4), word(entry + 8));
-            let (links, parents) = match cells[..] {
-                [] => (0, 0),
-                [parents] => (1, parents),
-                [.., above, parents] => (above, parents),
-            };
-            let links = start + 4..start + 4 + 4 * links;
-            let nodes = links.end..links.end + 2 * halves(rho) * parents;
-            let start_of_drawn = nodes.end.next_multiple_of(4);
-            // The header's depth.
-            let depth = cells.len();
-            let stores_drawn = (1..usize::from(bytes[10])).contains(&depth);
-            let drawn_bytes = match shell {
-                Shell::Thin if stores_drawn => nodes.len(),
-                _ => 0,
-            };
-            let drawn = start_of_drawn..start_of_drawn + drawn_bytes;
-            let attributes = drawn.end.next_multiple_of(4);
-            cells.push(word(start));
-            levels.push(Level {
-                links,
-                nodes,
-                drawn,
-                attributes: attributes..attributes + 2 * word(start),
-                end: start + length,
-            });
-        }
-        Self {
-            name,
-            bytes,
-            rho,
-            levels,
-        }
     }
 }
 
@@ -157,6 +98,10 @@ impl Mutant {
     fn gentle(&mut self, asset: &Layout, random: &mut Random) {
         let level = &asset.levels[random.below(asset.levels.len())];
         let record = 2 * halves(asset.rho);
+        if !level.tables.is_empty() && random.below(2) == 0 {
+            return self.gentle_codes(asset, level, random);
+        }
+        let is_coded = !level.tables.is_empty();
         match random.below(7) {
             0 => {
                 let normal = random.next() as u16 & 0x1fff;
@@ -169,7 +114,7 @@ impl Mutant {
                 let at = Self::place(&level.attributes, random);
                 self.set(at, &(random.next() as u16).to_le_bytes());
             }
-            2 if !level.nodes.is_empty() => {
+            2 if !level.nodes.is_empty() && !is_coded => {
                 let at =
                     level.nodes.start + record * random.below(level.nodes.len() / record) + record
                         - 2;
@@ -184,10 +129,10 @@ impl Mutant {
                     self.set(at, &(own | new).to_le_bytes());
                 }
             }
-            3 if !level.nodes.is_empty() && level.drawn.is_empty() => {
+            3 if !level.nodes.is_empty() && level.drawn.is_empty() && !is_coded => {
                 self.rotate_mask(asset.rho, &level.nodes, random)
             }
-            6 if !level.drawn.is_empty() => {
+            6 if !level.drawn.is_empty() && !is_coded => {
                 // Fewer children are drawn; flags stay.
                 let at = Self::place(&level.drawn, random);
                 let mut mask = random.next() as u16;
@@ -203,6 +148,39 @@ impl Mutant {
                 self.log.push(format!("cut at {end}"));
                 self.bytes.truncate(end);
             }
+        }
+    }
+
+    /// Other flags, for one record or for all that share them; a mask of as
+    /// many other cells.
+    fn gentle_codes(&mut self, asset: &Layout, level: &Level, random: &mut Random) {
+        match random.below(3) {
+            0 => {
+                let at = Self::place(&level.nodes, random);
+                let codes = [at, at - level.nodes.start + level.drawn.start];
+                let arrays = if level.drawn.is_empty() { 1 } else { 2 };
+                let flags = random.below(FLAGS) as u16;
+                let codes = &codes[..arrays];
+                if codes.iter().all(|&at| self.half(at) < FIRST_ESCAPE) {
+                    for &at in codes {
+                        let own = self.half(at) & !15;
+                        self.set(at, &(own | flags).to_le_bytes());
+                    }
+                }
+            }
+            1 => {
+                let at = level.tables.start + 4 * random.below(FLAGS);
+                self.set(at, &((random.next() as u32) << 27).to_le_bytes());
+            }
+            _ if !asset.dictionary.is_empty() => {
+                let at = asset.dictionary.start + 4 * random.below(asset.dictionary.len() / 4);
+                let own = u32::from(self.half(at)) | u32::from(self.half(at + 2)) << 16;
+                let (count, mask) = (own >> 27 << 27, own & 0x7ff_ffff);
+                let turn = random.below(27);
+                let turned = (mask << turn | mask >> (27 - turn)) & 0x7ff_ffff;
+                self.set(at, &(count | turned).to_le_bytes());
+            }
+            _ => {}
         }
     }
 
@@ -229,7 +207,7 @@ impl Mutant {
         let length = self.bytes.len().max(1);
         let at = random.below(length);
         let level = &asset.levels[random.below(asset.levels.len())];
-        match random.below(13) {
+        match random.below(16) {
             0 => {
                 let flipped = self.bytes.get(at).copied().unwrap_or(0) ^ 1 << random.below(8);
                 self.set(at, &[flipped]);
@@ -294,6 +272,18 @@ impl Mutant {
             }
             11 if !level.links.is_empty() => {
                 let at = level.links.start + 4 * random.below(level.links.len() / 4);
+                self.set(at, &random.pick(&WORDS).to_le_bytes());
+            }
+            12 if !level.tables.is_empty() => {
+                let at = level.tables.start + 4 * random.below(level.tables.len() / 4);
+                self.set(at, &random.pick(&WORDS).to_le_bytes());
+            }
+            13 if !level.tables.is_empty() => {
+                let at = Self::place(&level.nodes, random);
+                self.set(at, &(random.next() as u16).to_le_bytes());
+            }
+            14 if !asset.dictionary.is_empty() => {
+                let at = asset.dictionary.start + 4 * random.below(asset.dictionary.len() / 4);
                 self.set(at, &random.pick(&WORDS).to_le_bytes());
             }
             _ => {

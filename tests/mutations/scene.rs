@@ -9,7 +9,8 @@ use rhogrid_core::draw::{Light, Quality, draw, shades_len};
 use rhogrid_core::numbers::{FocalPx, Length, SplatPx, Turns, Unit, Weight};
 use rhogrid_core::target::{Rect, Target, canvas_len};
 
-use super::mutate::{Layout, Random};
+use super::layout::Layout;
+use super::mutate::Random;
 
 /// Picture width and height.
 const SIDE: u16 = 32;
@@ -35,7 +36,21 @@ pub fn assets() -> Vec<Layout> {
         let grid = bake::grid(&Geometry::Mesh(mesh.clone()), &options, &|_| {}).unwrap();
         Layout::new(name, rho, shell, writer::to_bytes(&grid).unwrap())
     };
+    let coded = |name, shell, mesh: &Mesh, level, levels| {
+        let options = GridOptions {
+            level,
+            shell,
+            ..GridOptions::default()
+        };
+        let grid = bake::grid(&Geometry::Mesh(mesh.clone()), &options, &|_| {}).unwrap();
+        let bytes = writer::to_coded_bytes(&grid, levels).unwrap();
+        Layout::new(name, 3, shell, bytes)
+    };
     vec![
+        coded("coded torus", Shell::Fat, &shapes::torus(12, 8), 2, 2),
+        coded("coded thin torus", Shell::Thin, &shapes::torus(12, 8), 2, 3),
+        coded("coded, eight materials", Shell::Fat, &many, 1, 1),
+        coded("coded, thin, eight materials", Shell::Thin, &many, 2, 2),
         bake(
             "torus, rho 2",
             Shell::Fat,

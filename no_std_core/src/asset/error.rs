@@ -32,10 +32,12 @@ pub enum AssetError {
         /// The value found.
         rho: u8,
     },
-    /// This build of the core leaves out grids of such a rho.
+    /// This build of the core leaves out what the asset needs.
     LeftOut {
-        /// The value found.
-        rho: u8,
+        /// Offset of the header's field or of the section.
+        offset: u32,
+        /// The feature of the core that has it.
+        feature: &'static str,
     },
     /// More subdivisions than rho allows.
     Depth {
@@ -62,6 +64,12 @@ pub enum AssetError {
         /// Offset of the section.
         offset: u32,
     },
+    /// The dictionary of masks is malformed, repeated, not a tri-grid's, or
+    /// absent before a level with coded records.
+    Dictionary {
+        /// Offset of the section, or of the level's.
+        offset: u32,
+    },
     /// There are not as many levels as the header says.
     LevelCount {
         /// Offset of the section, or of the header's field.
@@ -81,6 +89,19 @@ pub enum AssetError {
     },
     /// A drawn record has children that its node has not, or other flags.
     Drawn {
+        /// Depth of the cell that it subdivides.
+        depth: u8,
+        /// Index of that cell in its level.
+        index: u32,
+    },
+    /// Flags of coded records have bits outside their place.
+    Flags {
+        /// Offset of the level's section.
+        offset: u32,
+    },
+    /// A coded record names no mask of the dictionary, or not the next record
+    /// of those that are stored whole.
+    Code {
         /// Depth of the cell that it subdivides.
         depth: u8,
         /// Index of that cell in its level.
@@ -127,9 +148,9 @@ impl fmt::Display for AssetError {
             Self::Rho { rho } => {
                 write!(f, "byte 9: rho is {rho}, not 2 to 5; bake the asset again")
             }
-            Self::LeftOut { rho } => write!(
+            Self::LeftOut { offset, feature } => write!(
                 f,
-                "byte 9: this build leaves out rho {rho}; enable rhogrid-core's feature rho-{rho}"
+                "byte {offset}: not drawn by this build; enable rhogrid-core's feature {feature}"
             ),
             Self::Depth { depth } => write!(
                 f,
@@ -151,6 +172,10 @@ impl fmt::Display for AssetError {
                 f,
                 "byte {offset}: malformed materials; bake the asset again"
             ),
+            Self::Dictionary { offset } => write!(
+                f,
+                "byte {offset}: malformed or misplaced dictionary of masks; bake the asset again"
+            ),
             Self::LevelCount { offset } => write!(
                 f,
                 "byte {offset}: levels do not match the header's depth; bake the asset again"
@@ -166,6 +191,14 @@ impl fmt::Display for AssetError {
             Self::Drawn { depth, index } => write!(
                 f,
                 "depth {depth}, cell {index}: the drawn record contradicts its node; bake the asset again"
+            ),
+            Self::Flags { offset } => write!(
+                f,
+                "byte {offset}: malformed flags of coded masks; bake the asset again"
+            ),
+            Self::Code { depth, index } => write!(
+                f,
+                "depth {depth}, cell {index}: a code without a mask; bake the asset again"
             ),
             Self::Link { depth, index } => write!(
                 f,

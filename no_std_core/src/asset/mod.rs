@@ -44,9 +44,10 @@
 //! Nodes, drawn and attributes are each padded to four bytes with zeros. Cells
 //! are stored breadth-first: children of one cell are contiguous, the drawn
 //! ones first, both kinds in the order of their mask bits (x fastest, then y,
-//! then z), and so are all grandchildren. Other section kinds are skipped. A
-//! file cut at the end of a level is a coarser model; cut anywhere else it is
-//! an error.
+//! then z), and so are all grandchildren. Kinds 3 and 4, of tri-grids alone,
+//! are a dictionary of masks and a level whose records are [coded]; such a
+//! level stands for one of kind 2. Other section kinds are skipped. A file cut
+//! at the end of a level is a coarser model; cut anywhere else it is an error.
 //!
 //! # Shells
 //!
@@ -70,17 +71,22 @@
 //! second array: nodes are what is drawn, as they are in fat assets. Where a
 //! file is cut, its finest level has both kinds, and its leaves are the drawn.
 
+pub mod coded;
 mod error;
+mod header;
 mod level;
 pub mod node;
+mod records;
 mod section;
 
 pub use error::AssetError;
 pub use level::Level;
+pub use records::{Record, Records};
 
 use crate::numbers::Length;
-use level::Shape;
-use section::{Sections, u8_at, u16_at, u32_at};
+use coded::{Coding, Codings, Dictionary};
+use level::{Shape, Stored};
+use section::{Section, Sections, u16_at};
 
 /// First bytes of every asset.
 pub const MAGIC: [u8; 4] = *b"RHOG";
@@ -98,6 +104,10 @@ pub const KIND_GRID: u8 = 1;
 pub const SECTION_MATERIALS: u32 = 1;
 /// Section kind of a level.
 pub const SECTION_LEVEL: u32 = 2;
+/// Section kind of a dictionary of masks: see [`coded`].
+pub const SECTION_DICTIONARY: u32 = 3;
+/// Section kind of a level with coded records: see [`coded`].
+pub const SECTION_CODED_LEVEL: u32 = 4;
 /// Most materials of an asset: three bits of an attribute.
 pub const MAX_MATERIALS: usize = 8;
 /// Most levels of any grid: depth 0 to 15.
@@ -156,7 +166,9 @@ pub struct Grid<'a> {
     radius: Length,
     materials: [Rgb; MAX_MATERIALS],
     material_count: u8,
+    dictionary: Option<Dictionary<'a>>,
     levels: [Level<'a>; MAX_LEVELS],
+    codings: Codings<'a>,
 }
 
 impl<'a> Grid<'a> {
@@ -179,29 +191,15 @@ impl<'a> Grid<'a> {
                     grid.read_materials(section.bytes, section.offset)?;
                     has_materials = true;
                 }
-                SECTION_LEVEL => {
-                    let (done, rest) =
-                        grid.levels
-                            .split_at_mut_checked(levels)
-                            .ok_or(AssetError::LevelCount {
-                                offset: section.offset,
-                            })?;
-                    let slot = rest.first_mut().ok_or(AssetError::LevelCount {
-                        offset: section.offset,
-                    })?;
-                    let shape = Shape {
-                        rho: grid.rho,
-                        shell: grid.shell,
-                        stores_drawn: stores_drawn(grid.shell, levels, grid.stored_depth),
-                        material_count: grid.material_count,
-                    };
-                    *slot = Level::open(shape, done, &section)?;
-                    levels += 1;
-                }
                 SECTION_MATERIALS => {
                     return Err(AssetError::Materials {
                         offset: section.offset,
                     });
+                }
+                SECTION_DICTIONARY => grid.read_dictionary(&section)?,
+                SECTION_LEVEL | SECTION_CODED_LEVEL => {
+                    grid.read_level(levels, &section)?;
+                    levels += 1;
                 }
                 _ => {}
             }
@@ -217,79 +215,37 @@ impl<'a> Grid<'a> {
         Ok(grid)
     }
 
-    /// The header's own fields, checked.
-    fn header(bytes: &[u8]) -> Result<Self, AssetError> {
-        let field = |offset: usize| {
-            u8_at(bytes, offset).ok_or(AssetError::Truncated {
-                length: bytes.len() as u32,
-            })
-        };
-        let kind = field(8)?;
-        if kind != KIND_GRID {
-            return Err(AssetError::Kind { kind });
+    /// One at most, of a tri-grid; what uses it comes later.
+    fn read_dictionary(&mut self, section: &Section<'a>) -> Result<(), AssetError> {
+        if self.rho != 3 || self.dictionary.is_some() {
+            let offset = section.offset;
+            return Err(AssetError::Dictionary { offset });
         }
-        let (rho, depth) = (field(9)?, field(10)?);
-        if !(2..=5).contains(&rho) {
-            return Err(AssetError::Rho { rho });
-        }
-        if !is_built(rho) {
-            return Err(AssetError::LeftOut { rho });
-        }
-        if depth > max_depth(rho) {
-            return Err(AssetError::Depth { depth });
-        }
-        if field(11)? != 16 {
-            return Err(AssetError::Field { offset: 11 });
-        }
-        let shell = match field(12)? {
-            0 => Shell::Fat,
-            1 => Shell::Thin,
-            _ => return Err(AssetError::Field { offset: 12 }),
-        };
-        if field(13)? > 2 {
-            return Err(AssetError::Field { offset: 13 });
-        }
-        let flags = field(14)?;
-        if flags > 1 {
-            return Err(AssetError::Field { offset: 14 });
-        }
-        for offset in [20, 56] {
-            if u32_at(bytes, offset) != Some(0) {
-                let offset = offset as u32;
-                return Err(AssetError::Field { offset });
-            }
-        }
-        let radius = u32_at(bytes, 16).unwrap_or(0);
-        // Between a touching sphere and the cube's corner, rounding included.
-        if !(1..=2 << 28).contains(&radius) {
-            return Err(AssetError::Field { offset: 16 });
-        }
-        Ok(Self {
-            rho,
-            depth: 0,
-            stored_depth: depth,
-            shell,
-            two_sided: flags & 1 != 0,
-            radius: Length::from_bits(i64::from(radius) << 4),
-            materials: [[255; 3]; MAX_MATERIALS],
-            material_count: 1,
-            levels: [Level::EMPTY; MAX_LEVELS],
-        })
+        self.dictionary = Some(Dictionary::open(section)?);
+        Ok(())
     }
 
-    fn read_materials(&mut self, bytes: &[u8], offset: u32) -> Result<(), AssetError> {
-        let error = AssetError::Materials { offset };
-        let count = u32_at(bytes, 0).ok_or(error)?;
-        if !(1..=MAX_MATERIALS as u32).contains(&count) || bytes.len() != 4 + 4 * count as usize {
-            return Err(error);
+    /// The level that follows so many.
+    fn read_level(&mut self, levels: usize, section: &Section<'a>) -> Result<(), AssetError> {
+        let shape = Shape {
+            rho: self.rho,
+            shell: self.shell,
+            stores_drawn: stores_drawn(self.shell, levels, self.stored_depth),
+            material_count: self.material_count,
+        };
+        let offset = section.offset;
+        let (done, rest) = self
+            .levels
+            .split_at_mut_checked(levels)
+            .ok_or(AssetError::LevelCount { offset })?;
+        let slot = rest.first_mut().ok_or(AssetError::LevelCount { offset })?;
+        let above = levels.checked_sub(1);
+        let coding_above = above.and_then(|above| self.codings.get(above).copied());
+        let stored = Stored::open(shape, done, coding_above, section, self.dictionary)?;
+        *slot = stored.level;
+        if let Some(coding) = stored.coding {
+            self.codings.set(levels, coding);
         }
-        for (material, word) in self.materials.iter_mut().zip(bytes.chunks_exact(4).skip(1)) {
-            match *word {
-                [red, green, blue, 0] => *material = [red, green, blue],
-                _ => return Err(error),
-            }
-        }
-        self.material_count = count as u8;
         Ok(())
     }
 
@@ -337,6 +293,41 @@ impl<'a> Grid<'a> {
         self.materials
             .get(..usize::from(self.material_count))
             .unwrap_or(&[])
+    }
+
+    /// The masks that coded records name by index, where the file has some.
+    pub fn dictionary(&self) -> Option<&'a [u32]> {
+        self.dictionary.map(|dictionary| dictionary.masks())
+    }
+
+    /// What the codes of the level of a depth stand for, where it is coded.
+    #[inline(always)]
+    pub fn coding(&self, depth: usize) -> Option<&Coding<'a>> {
+        // Grids without a dictionary look no further.
+        self.dictionary.and_then(|_| self.codings.get(depth))
+    }
+
+    fn stored(&self, depth: usize) -> Stored<'a> {
+        Stored {
+            level: *self.levels.get(depth).unwrap_or(&Level::EMPTY),
+            coding: self.coding(depth).copied(),
+        }
+    }
+
+    /// The records of [`Level::nodes`] of a depth; none where it has none.
+    pub fn node_records(&self, depth: usize) -> Records<'a> {
+        self.stored(depth).node_records(self.rho)
+    }
+
+    /// The records of [`Level::drawn`] of a depth, the same.
+    pub fn drawn_records(&self, depth: usize) -> Records<'a> {
+        self.stored(depth).drawn_records(self.rho)
+    }
+
+    /// Index, in the level of a depth, of the first grandchild of a cell two
+    /// levels above; zero where there is no such cell.
+    pub fn link(&self, depth: usize, cell: usize) -> u32 {
+        self.stored(depth).link(cell)
     }
 
     /// Levels from the root (depth 0) to the finest.

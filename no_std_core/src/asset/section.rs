@@ -1,8 +1,8 @@
 //! The section table: bounds, order and checksums.
 
 use super::{
-    AssetError, HEADER_BYTES, HEADER_CRC_OFFSET, SECTION_BYTES, SECTION_LEVEL, check_magic,
-    checksum,
+    AssetError, HEADER_BYTES, HEADER_CRC_OFFSET, SECTION_BYTES, SECTION_CODED_LEVEL, SECTION_LEVEL,
+    check_magic, checksum,
 };
 
 /// A byte at an offset.
@@ -119,7 +119,8 @@ fn count_present(table: &[u8], start: usize, length: usize) -> Result<usize, Ass
             });
         }
         end += u64::from(bytes);
-        if end == length && kind == SECTION_LEVEL && present.is_none() {
+        let is_level = matches!(kind, SECTION_LEVEL | SECTION_CODED_LEVEL);
+        if end == length && is_level && present.is_none() {
             present = Some(index + 1);
         }
     }

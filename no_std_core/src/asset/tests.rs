@@ -3,6 +3,8 @@ use crate::testing::model::seal;
 use crate::testing::{File, Model, Rng, aligned};
 use std::vec::Vec;
 
+#[cfg(all(feature = "rho-3", feature = "mask-dictionary"))]
+mod coded;
 mod cut;
 mod left_out;
 
@@ -242,12 +244,11 @@ fn assert_is_coarser(grid: &Grid<'_>, model: &Model, depth: usize) {
     }
     let mut drawn = Vec::new();
     let mut first = 0;
-    let size = node::halves(grid.rho());
-    let records = level.nodes.chunks_exact(size);
-    for (all, part) in records.zip(level.drawn.chunks_exact(size)) {
-        let part = node::occupied(grid.rho(), part) as usize;
+    let rho = grid.rho();
+    for (all, part) in grid.node_records(depth).zip(grid.drawn_records(depth)) {
+        let part = node::occupied(rho, part.halves()) as usize;
         drawn.extend_from_slice(&level.attributes[first..first + part]);
-        first += node::occupied(grid.rho(), all) as usize;
+        first += node::occupied(rho, all.halves()) as usize;
     }
     assert_eq!(drawn, want);
 }

@@ -5,6 +5,8 @@ use crate::testing::view::{looking, magnitude};
 use crate::testing::{Model, Rng, aligned, camera, direction};
 use std::vec::Vec;
 
+#[cfg(all(feature = "rho-3", feature = "mask-dictionary"))]
+mod coded;
 mod twin;
 
 /// A picture.

@@ -29,7 +29,7 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
     #[inline(never)]
     pub(super) fn blocks<'q, const RHO: u8, const FACES: bool>(
         &self,
-        subtree: &Subtree<'_, RHO>,
+        subtree: &Subtree<'_, 'a, RHO>,
         level: &Level<'a>,
         start: u32,
         queue: &'q mut Queue<'_, 'a>,
@@ -46,7 +46,7 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
     #[inline(always)]
     fn stored_blocks<'q, const RHO: u8, const FACES: bool, S: Stored>(
         &self,
-        subtree: &Subtree<'_, RHO>,
+        subtree: &Subtree<'_, 'a, RHO>,
         level: &Level<'a>,
         start: u32,
         queue: &'q mut Queue<'_, 'a>,
@@ -68,10 +68,7 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
             kept.keep::<RHO, S>(&children, normals);
         }
         let count = room - kept.free.len();
-        let visited = children.own.len() as u32;
-        stats.nodes_visited += visited;
-        stats.nodes_back_facing += visited - count as u32;
-        stats.facing_tests += if FACES { visited } else { 0 };
+        stats.visit(children.own.len(), count, FACES);
         queue.blocks.get(..count).unwrap_or(&[])
     }
 
@@ -79,7 +76,7 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
     #[inline(always)]
     fn children<'c, const RHO: u8, S: Stored>(
         &self,
-        subtree: &Subtree<'_, RHO>,
+        subtree: &Subtree<'_, 'a, RHO>,
         level: &Level<'c>,
         start: u32,
         places: &'c mut [u32],
@@ -192,7 +189,7 @@ impl Kept<'_, '_> {
 /// The cell itself, whose children, in `level`, are drawn.
 #[inline(always)]
 pub(super) fn block<'q, 'a, const RHO: u8>(
-    subtree: &Subtree<'_, RHO>,
+    subtree: &Subtree<'_, 'a, RHO>,
     level: &Level<'a>,
     start: u32,
     queue: &'q mut Queue<'_, 'a>,
@@ -219,7 +216,7 @@ pub(super) fn block<'q, 'a, const RHO: u8>(
 
 /// Writes the places of a cell's children, in file order; gives their number.
 #[inline(always)]
-fn place_children<const RHO: u8>(
+pub(super) fn place_children<const RHO: u8>(
     record: &Record<RHO>,
     start: u32,
     blocks: &Subcells,

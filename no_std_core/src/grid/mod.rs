@@ -8,6 +8,7 @@
 mod affine;
 mod blocks;
 mod clip;
+mod decoded;
 mod facing;
 mod footprint;
 mod leaves;

@@ -228,20 +228,26 @@ impl Model {
         record
     }
 
+    /// The links of a level.
+    pub fn links(&self, depth: usize) -> Vec<u32> {
+        match depth {
+            0 => Vec::new(),
+            1 => std::vec![0],
+            _ => {
+                let (parents, cells) = (&self.levels[depth - 1], &self.levels[depth]);
+                let first = |grandparent| {
+                    cells.partition_point(|cell| parents[cell.parent].parent < grandparent) as u32
+                };
+                (0..self.levels[depth - 2].len()).map(first).collect()
+            }
+        }
+    }
+
     fn level(&self, depth: usize) -> Vec<u8> {
         let cells = &self.levels[depth];
         let mut bytes = Vec::new();
         bytes.extend((cells.len() as u32).to_le_bytes());
-        if depth == 1 {
-            bytes.extend(0u32.to_le_bytes());
-        }
-        if depth >= 2 {
-            for grandparent in 0..self.levels[depth - 2].len() {
-                let parents = &self.levels[depth - 1];
-                let first = cells.partition_point(|cell| parents[cell.parent].parent < grandparent);
-                bytes.extend((first as u32).to_le_bytes());
-            }
-        }
+        bytes.extend(self.links(depth).into_iter().flat_map(u32::to_le_bytes));
         if depth >= 1 {
             let parents = || self.levels[depth - 1].iter();
             let nodes = parents().flat_map(|cell| self.record(cell.mask, cell.flags));
@@ -287,7 +293,7 @@ pub(crate) fn child_place(rho: u8, place: [i64; 3], bit: u32) -> [i64; 3] {
     [0, 1, 2].map(|axis| place[axis] * rho + 2 * subcell[axis] - rho + 1)
 }
 
-fn extend_padded(bytes: &mut Vec<u8>, words: impl Iterator<Item = u16>) {
+pub(crate) fn extend_padded(bytes: &mut Vec<u8>, words: impl Iterator<Item = u16>) {
     bytes.extend(words.flat_map(u16::to_le_bytes));
     bytes.resize(bytes.len().next_multiple_of(4), 0);
 }

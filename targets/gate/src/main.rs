@@ -109,6 +109,17 @@ fn draw_unknown(target: Option<Target<'_>>) {
     black_box(grid.radius());
     black_box(shades_len(grid.materials().len()));
     black_box((grid.levels().len(), grid.rho(), grid.depth()));
+    let depth = black_box(0);
+    for records in [grid.node_records(depth), grid.drawn_records(depth)] {
+        records.for_each(|record| {
+            black_box(record.halves());
+        });
+    }
+    black_box((grid.link(depth, black_box(0)), grid.dictionary()));
+    black_box(
+        grid.coding(depth)
+            .map(|coding| (coding.links(), coding.escapes())),
+    );
     black_box(draw(
         &grid,
         &unknown_camera(),

@@ -3,6 +3,8 @@
 
 use super::*;
 use crate::asset::is_built;
+#[cfg(feature = "rho-3")]
+use crate::testing::Coder;
 
 #[test]
 fn exactly_what_is_built_opens() {
@@ -13,8 +15,34 @@ fn exactly_what_is_built_opens() {
         let want = if is_built(rho) {
             Ok(rho)
         } else {
-            Err(AssetError::LeftOut { rho })
+            Err(AssetError::LeftOut {
+                offset: 9,
+                feature: ["rho-2", "rho-3", "rho-4", "rho-5"][usize::from(rho) - 2],
+            })
         };
         assert_eq!(opened, want);
     }
+}
+
+/// A file with a dictionary opens where its feature is built; cut before the
+/// dictionary, everywhere.
+#[test]
+#[cfg(feature = "rho-3")]
+fn dictionaries_open_where_they_are_built() {
+    let mut rng = Rng::with_seed(54);
+    let model = Model::random(&mut rng, 3, 3, 80.0);
+    let file = Coder::of(&model, 2, 8).file(&model);
+    let bytes = aligned(&file.bytes());
+    // The root, depth 1, dictionary, depth 2, depth 3.
+    let offset = file.ends()[1];
+    let want = match cfg!(feature = "mask-dictionary") {
+        true => Ok(3),
+        false => Err(AssetError::LeftOut {
+            offset: offset as u32,
+            feature: "mask-dictionary",
+        }),
+    };
+    assert_eq!(Grid::open(&bytes).map(|grid| grid.depth()), want);
+    let cut = aligned(&file.bytes()[..offset]);
+    assert_eq!(Grid::open(&cut).map(|grid| grid.depth()), Ok(1));
 }
