@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use rhogrid::asset_file::AssetFile;
 use rhogrid::cli::{Model, core_light, core_quality, draw_frame, float_light};
 use rhogrid::error::Error;
-use rhogrid_core::asset::node::{halves, occupied};
+use rhogrid_core::asset::node::occupied;
 use rhogrid_core::draw::{Light, Quality};
 use rhogrid_targets::failure;
 use rhogrid_targets::job::{self, Job};
@@ -193,10 +193,10 @@ fn frame(
 /// Cells of the deepest level that are drawn.
 fn leaf_samples(asset: &AssetFile) -> u64 {
     let grid = asset.grid();
-    let rho = grid.rho();
-    let records = grid.levels().last().map(|level| level.drawn);
-    let records = records.unwrap_or(&[]).chunks_exact(halves(rho));
-    let leaves: u64 = records.map(|record| u64::from(occupied(rho, record))).sum();
+    let records = grid.drawn_records(usize::from(grid.depth()));
+    let leaves: u64 = records
+        .map(|record| u64::from(occupied(grid.rho(), record.halves())))
+        .sum();
     // A root alone is one.
     leaves.max(1)
 }

@@ -20,13 +20,3 @@ pub struct Stats {
     /// their own size.
     pub splats_drawn: u32,
 }
-
-impl Stats {
-    /// Counts siblings, some of which are kept; the others faced away.
-    #[inline(always)]
-    pub(crate) fn visit(&mut self, siblings: usize, kept: usize, are_tested: bool) {
-        self.nodes_visited += siblings as u32;
-        self.nodes_back_facing += (siblings - kept.min(siblings)) as u32;
-        self.facing_tests += if are_tested { siblings as u32 } else { 0 };
-    }
-}

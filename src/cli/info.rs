@@ -65,7 +65,7 @@ pub struct ByteCounts {
     pub masks: usize,
     /// Drawn records, where a level has some of its own; or their codes.
     pub drawn_masks: usize,
-    /// Masks that codes stand for.
+    /// Masks that codes name by index.
     pub dictionary: usize,
     /// Records that no code stands for.
     pub escapes: usize,

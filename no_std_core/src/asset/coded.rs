@@ -2,8 +2,8 @@
 //!
 //! The masks of real surfaces repeat. A *dictionary*, section kind 3, at most
 //! one and before the levels that use it, holds up to 4032 of them: one 32-bit
-//! word each, with the number of its cells in place of flags. A *coded level*, section kind 4, has codes in place
-//! of records, and narrower links:
+//! word each, with the number of its cells in place of flags. A *coded level*,
+//! section kind 4, has codes in place of records, and narrower links:
 //!
 //! | level of depth n | length |
 //! |---|---|

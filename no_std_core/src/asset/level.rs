@@ -23,7 +23,8 @@ pub struct Level<'a> {
     pub drawn: &'a [u16],
     /// Attributes of the cells of this depth n: material << 13 | normal code.
     pub attributes: &'a [u16],
-    /// `nodes` and `drawn` of tri-grids, whose records are words; else empty.
+    /// `nodes` and `drawn` of tri-grids that are not coded, whose records are
+    /// words; else empty.
     pub(crate) words: [&'a [u32]; 2],
 }
 

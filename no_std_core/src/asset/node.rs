@@ -74,11 +74,6 @@ impl Flags {
         }
     }
 
-    /// The flags of a tri-grid's record.
-    pub const fn from_word(record: u32) -> Self {
-        Self::from_last(3, (record >> 16) as u16)
-    }
-
     /// Whether samples that face away show their other side: faces of every
     /// direction, drawn from both sides.
     pub const fn is_sheet(self) -> bool {

@@ -3,16 +3,17 @@
 //! Three short loops, each of which keeps its data in registers: places by
 //! additions, facing by cones, then what is drawn of those that are kept.
 
+use core::marker::PhantomData;
 use core::slice;
 
 use super::mask::{self, SLOTS};
 use super::normals::Normals;
 use super::packed::{Block, Subcells};
-use super::record::{Record, Stored};
+use super::record::{Reader, Record, Stored};
 use super::subtree::Subtree;
 use super::traverse::Frame;
 use crate::asset::Level;
-use crate::asset::node::Flags;
+use crate::asset::coded::Coding;
 use crate::stats::Stats;
 
 /// Memory for one subtree, as much as a cell has subcells.
@@ -29,58 +30,95 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
     #[inline(never)]
     pub(super) fn blocks<'q, const RHO: u8, const FACES: bool>(
         &self,
-        subtree: &Subtree<'_, 'a, RHO>,
+        subtree: &Subtree<'_, RHO>,
         level: &Level<'a>,
         start: u32,
         queue: &'q mut Queue<'_, 'a>,
         stats: &mut Stats,
     ) -> &'q [Block<'a>] {
+        if let Some(coding) = self.coding::<RHO>(subtree.cell.depth + 2) {
+            return self.coded_blocks::<RHO, FACES>(subtree, level, coding, start, queue, stats);
+        }
         match RHO {
-            2 => self.stored_blocks::<RHO, FACES, [u16; 1]>(subtree, level, start, queue, stats),
-            3 => self.stored_blocks::<RHO, FACES, u32>(subtree, level, start, queue, stats),
-            4 => self.stored_blocks::<RHO, FACES, [u16; 5]>(subtree, level, start, queue, stats),
-            _ => self.stored_blocks::<RHO, FACES, [u16; 9]>(subtree, level, start, queue, stats),
+            2 => self.plain_blocks::<RHO, FACES, [u16; 1]>(subtree, level, start, queue, stats),
+            3 => self.plain_blocks::<RHO, FACES, u32>(subtree, level, start, queue, stats),
+            4 => self.plain_blocks::<RHO, FACES, [u16; 5]>(subtree, level, start, queue, stats),
+            _ => self.plain_blocks::<RHO, FACES, [u16; 9]>(subtree, level, start, queue, stats),
         }
     }
 
     #[inline(always)]
-    fn stored_blocks<'q, const RHO: u8, const FACES: bool, S: Stored>(
+    fn plain_blocks<'q, const RHO: u8, const FACES: bool, S: Stored>(
         &self,
-        subtree: &Subtree<'_, 'a, RHO>,
+        subtree: &Subtree<'_, RHO>,
         level: &Level<'a>,
         start: u32,
         queue: &'q mut Queue<'_, 'a>,
         stats: &mut Stats,
     ) -> &'q [Block<'a>] {
-        let Some(children) = self.children::<RHO, S>(subtree, level, start, queue.places) else {
+        let records = PhantomData::<S>;
+        self.read_blocks::<RHO, FACES, _>(subtree, level, records, start, queue, stats)
+    }
+
+    /// Where the children's records are coded; compiled by itself, so that
+    /// others do not pay for it.
+    #[inline(never)]
+    fn coded_blocks<'q, const RHO: u8, const FACES: bool>(
+        &self,
+        subtree: &Subtree<'_, RHO>,
+        level: &Level<'a>,
+        coding: &Coding<'a>,
+        start: u32,
+        queue: &'q mut Queue<'_, 'a>,
+        stats: &mut Stats,
+    ) -> &'q [Block<'a>] {
+        self.read_blocks::<RHO, FACES, _>(subtree, level, coding, start, queue, stats)
+    }
+
+    #[inline(always)]
+    fn read_blocks<'q, const RHO: u8, const FACES: bool, R: Reader>(
+        &self,
+        subtree: &Subtree<'_, RHO>,
+        level: &Level<'a>,
+        reader: R,
+        start: u32,
+        queue: &'q mut Queue<'_, 'a>,
+        stats: &mut Stats,
+    ) -> &'q [Block<'a>] {
+        let Some(children) = self.children::<RHO, R>(subtree, level, reader, start, queue.places)
+        else {
             return &[];
         };
-        let link = level.links.get(subtree.cell.index).copied().unwrap_or(0);
+        let link = reader.link(level, subtree.cell.index);
         let room = queue.blocks.len();
         let mut kept = Kept {
             free: queue.blocks.iter_mut(),
-            attributes: level.attributes.get(link as usize..).unwrap_or(&[]),
+            attributes: level.attributes.get(link..).unwrap_or(&[]),
         };
         let normals = FACES.then_some(subtree.normals);
         if RHO > 3 {
-            children.in_groups(|group| kept.keep::<RHO, S>(group, normals));
+            children.in_groups(|group| kept.keep::<RHO, R>(group, normals));
         } else {
-            kept.keep::<RHO, S>(&children, normals);
+            kept.keep::<RHO, R>(&children, normals);
         }
         let count = room - kept.free.len();
-        stats.visit(children.own.len(), count, FACES);
+        let visited = children.own.len() as u32;
+        stats.nodes_visited += visited;
+        stats.nodes_back_facing += visited - count as u32;
+        stats.facing_tests += if FACES { visited } else { 0 };
         queue.blocks.get(..count).unwrap_or(&[])
     }
 
     /// The children of the subtree's cell, with their places.
     #[inline(always)]
-    fn children<'c, const RHO: u8, S: Stored>(
+    fn children<'c, const RHO: u8, R: Reader>(
         &self,
-        subtree: &Subtree<'_, 'a, RHO>,
+        subtree: &Subtree<'_, RHO>,
         level: &Level<'c>,
+        reader: R,
         start: u32,
         places: &'c mut [u32],
-    ) -> Option<Children<'c, S>>
+    ) -> Option<Children<'c, R>>
     where
         'a: 'c,
     {
@@ -89,8 +127,9 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
         let first = cell.first_child;
         let cells = first..first.checked_add(count)?;
         let own = self.grid.levels().get(usize::from(cell.depth) + 1)?;
-        let [nodes, drawn] = S::of(level);
+        let [nodes, drawn] = reader.records(level);
         Some(Children {
+            reader,
             first,
             own: own.attributes.get(cells.clone())?,
             nodes: nodes.get(cells.clone())?,
@@ -101,24 +140,26 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
 }
 
 /// Siblings that may become blocks; as many of each.
-struct Children<'a, S> {
+struct Children<'a, R: Reader> {
+    reader: R,
     /// Index of the first one.
     first: usize,
     /// Their attributes.
     own: &'a [u16],
-    nodes: &'a [S],
-    drawn: &'a [S],
+    nodes: &'a [R::Stored],
+    drawn: &'a [R::Stored],
     places: &'a [u32],
 }
 
-impl<S: Stored> Children<'_, S> {
+impl<R: Reader> Children<'_, R> {
     /// Visits groups of up to 32.
     #[inline(always)]
-    fn in_groups(&self, mut visit: impl FnMut(&Children<'_, S>)) {
+    fn in_groups(&self, mut visit: impl FnMut(&Children<'_, R>)) {
         let own = self.own.chunks(32).zip(self.nodes.chunks(32));
         let places = self.drawn.chunks(32).zip(self.places.chunks(32));
         for (index, ((own, nodes), (drawn, places))) in own.zip(places).enumerate() {
             visit(&Children {
+                reader: self.reader,
                 first: self.first + 32 * index,
                 own,
                 nodes,
@@ -130,10 +171,10 @@ impl<S: Stored> Children<'_, S> {
 
     /// Which of up to 32 do not face away, lowest bit first.
     #[inline(always)]
-    fn not_away(&self, normals: &Normals, rho: u8) -> u32 {
+    fn not_away<const RHO: u8>(&self, normals: &Normals) -> u32 {
         let (mut kept, mut bit) = (0, 1u32);
-        for (&axis, record) in self.own.iter().zip(self.drawn) {
-            if !normals.is_away(Flags::from_bits(record.flag_bits(rho)), axis) {
+        for ((&axis, &drawn), index) in self.own.iter().zip(self.drawn).zip(self.first..) {
+            if !normals.is_away(self.reader.flags::<RHO>(drawn, index), axis) {
                 kept |= bit;
             }
             bit = bit.wrapping_shl(1);
@@ -153,19 +194,20 @@ impl Kept<'_, '_> {
     /// Keeps those of up to 32 cells that do not face away; all without
     /// normals.
     #[inline(always)]
-    fn keep<const RHO: u8, S: Stored>(
+    fn keep<const RHO: u8, R: Reader>(
         &mut self,
-        children: &Children<'_, S>,
+        children: &Children<'_, R>,
         normals: Option<&Normals>,
     ) {
         let mut bits = match normals {
-            Some(normals) => children.not_away(normals, RHO),
+            Some(normals) => children.not_away::<RHO>(normals),
             None => u32::MAX,
         };
+        let reader = children.reader;
         let records = children.drawn.iter().zip(children.nodes);
         let cells = records.zip(children.places).zip(children.first..);
         for (((&drawn, &node), &place), index) in cells {
-            let count = node.mask::<RHO>().count();
+            let count = reader.cells::<RHO>(node, index);
             let Some((all, others)) = self.attributes.split_at_checked(count) else {
                 return;
             };
@@ -173,12 +215,13 @@ impl Kept<'_, '_> {
             let is_kept = bits & 1 != 0;
             bits >>= 1;
             if is_kept
-                && let Some(attributes) = all.get(..drawn.mask::<RHO>().count())
+                && let (record, count) = reader.drawn::<RHO>(drawn, index)
+                && let Some(attributes) = all.get(..count)
                 && let Some(block) = self.free.next()
             {
                 *block = Block {
                     place,
-                    record: drawn.word().unwrap_or(index as u32),
+                    record,
                     attributes,
                 };
             }
@@ -189,7 +232,7 @@ impl Kept<'_, '_> {
 /// The cell itself, whose children, in `level`, are drawn.
 #[inline(always)]
 pub(super) fn block<'q, 'a, const RHO: u8>(
-    subtree: &Subtree<'_, 'a, RHO>,
+    subtree: &Subtree<'_, RHO>,
     level: &Level<'a>,
     start: u32,
     queue: &'q mut Queue<'_, 'a>,
@@ -216,7 +259,7 @@ pub(super) fn block<'q, 'a, const RHO: u8>(
 
 /// Writes the places of a cell's children, in file order; gives their number.
 #[inline(always)]
-pub(super) fn place_children<const RHO: u8>(
+fn place_children<const RHO: u8>(
     record: &Record<RHO>,
     start: u32,
     blocks: &Subcells,

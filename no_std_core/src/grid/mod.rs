@@ -8,7 +8,6 @@
 mod affine;
 mod blocks;
 mod clip;
-mod decoded;
 mod facing;
 mod footprint;
 mod leaves;

@@ -190,7 +190,7 @@ impl Block<'_> {
             let flags = Flags::from_bits(self.record.flag_bits(RHO));
             return (self.record.mask(), flags);
         }
-        match record_of(level, self.record as usize) {
+        match record_of(level, None, self.record as usize) {
             Some(record) => (record.drawn, record.flags),
             None => (Mask::NOTHING, Flags::from_bits(0)),
         }

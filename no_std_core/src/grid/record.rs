@@ -1,7 +1,10 @@
 //! The records of cells, as they are read for drawing.
 
+use core::marker::PhantomData;
+
 use super::mask::Mask;
 use crate::asset::Level;
+use crate::asset::coded::Coding;
 use crate::asset::node::{Flags, flag_bits};
 
 /// The two records of a cell: see [the format](crate::asset).
@@ -72,24 +75,139 @@ impl<const HALVES: usize> Stored for [u16; HALVES] {
     }
 }
 
-#[inline(always)]
-fn get<const RHO: u8, S: Stored>(level: &Level<'_>, index: usize) -> Option<Record<RHO>> {
-    let [nodes, drawn] = S::of(level);
-    let (node, drawn) = (nodes.get(index)?, drawn.get(index)?);
-    Some(Record {
-        children: node.mask(),
-        drawn: drawn.mask(),
-        flags: Flags::from_bits(drawn.flag_bits(RHO)),
-    })
+impl<const RHO: u8> Record<RHO> {
+    #[inline(always)]
+    fn of<S: Stored>([node, drawn]: [S; 2]) -> Self {
+        Self {
+            children: node.mask(),
+            drawn: drawn.mask(),
+            flags: Flags::from_bits(drawn.flag_bits(RHO)),
+        }
+    }
 }
 
-/// A cell's record in the level of its children.
+/// A cell's records as the file holds them.
 #[inline(always)]
-pub(super) fn record_of<const RHO: u8>(level: &Level<'_>, index: usize) -> Option<Record<RHO>> {
+fn stored<S: Stored>(level: &Level<'_>, index: usize) -> Option<[S; 2]> {
+    let [nodes, drawn] = S::of(level);
+    Some([*nodes.get(index)?, *drawn.get(index)?])
+}
+
+/// What a cell's codes stand for.
+#[inline(always)]
+fn decoded(level: &Level<'_>, coding: &Coding<'_>, index: usize) -> Option<[u32; 2]> {
+    let codes = [*level.nodes.get(index)?, *level.drawn.get(index)?];
+    Some(coding.pair(codes, index))
+}
+
+/// A cell's record in the level of its children, which may be coded.
+#[inline(always)]
+pub(super) fn record_of<const RHO: u8>(
+    level: &Level<'_>,
+    coding: Option<&Coding<'_>>,
+    index: usize,
+) -> Option<Record<RHO>> {
     match RHO {
-        2 => get::<RHO, [u16; 1]>(level, index),
-        3 => get::<RHO, u32>(level, index),
-        4 => get::<RHO, [u16; 5]>(level, index),
-        _ => get::<RHO, [u16; 9]>(level, index),
+        2 => stored::<[u16; 1]>(level, index).map(Record::of),
+        3 => match coding {
+            None => stored::<u32>(level, index),
+            Some(coding) => decoded(level, coding, index),
+        }
+        .map(Record::of),
+        4 => stored::<[u16; 5]>(level, index).map(Record::of),
+        _ => stored::<[u16; 9]>(level, index).map(Record::of),
+    }
+}
+
+/// A level's link of a group; zero where there is none.
+#[inline(always)]
+pub(super) fn link_of(level: &Level<'_>, coding: Option<&Coding<'_>>, group: usize) -> usize {
+    let link = match coding {
+        None => level.links.get(group).copied().unwrap_or(0),
+        Some(coding) => coding.link(group),
+    };
+    link as usize
+}
+
+/// Reads records one by one, each with its index in their level.
+pub(super) trait Reader: Copy {
+    /// What the file holds of each.
+    type Stored: Copy;
+
+    /// A level's node and drawn records.
+    fn records<'a>(self, level: &Level<'a>) -> [&'a [Self::Stored]; 2];
+
+    /// A level's link of a group; zero where there is none.
+    fn link(self, level: &Level<'_>, group: usize) -> usize;
+
+    /// The number of a node's cells.
+    fn cells<const RHO: u8>(self, node: Self::Stored, index: usize) -> usize;
+
+    fn flags<const RHO: u8>(self, drawn: Self::Stored, index: usize) -> Flags;
+
+    /// The drawn record where that is one word, else its index; and the number
+    /// of its cells.
+    fn drawn<const RHO: u8>(self, drawn: Self::Stored, index: usize) -> (u32, usize);
+}
+
+/// Records as they are.
+impl<S: Stored> Reader for PhantomData<S> {
+    type Stored = S;
+
+    #[inline(always)]
+    fn records<'a>(self, level: &Level<'a>) -> [&'a [S]; 2] {
+        S::of(level)
+    }
+
+    #[inline(always)]
+    fn link(self, level: &Level<'_>, group: usize) -> usize {
+        link_of(level, None, group)
+    }
+
+    #[inline(always)]
+    fn cells<const RHO: u8>(self, node: S, _: usize) -> usize {
+        node.mask::<RHO>().count()
+    }
+
+    #[inline(always)]
+    fn flags<const RHO: u8>(self, drawn: S, _: usize) -> Flags {
+        Flags::from_bits(drawn.flag_bits(RHO))
+    }
+
+    #[inline(always)]
+    fn drawn<const RHO: u8>(self, drawn: S, index: usize) -> (u32, usize) {
+        let record = drawn.word().unwrap_or(index as u32);
+        (record, drawn.mask::<RHO>().count())
+    }
+}
+
+/// Codes: how many cells a mask has stands beside it.
+impl Reader for &Coding<'_> {
+    type Stored = u16;
+
+    #[inline(always)]
+    fn records<'a>(self, level: &Level<'a>) -> [&'a [u16]; 2] {
+        [level.nodes, level.drawn]
+    }
+
+    #[inline(always)]
+    fn link(self, level: &Level<'_>, group: usize) -> usize {
+        link_of(level, Some(self), group)
+    }
+
+    #[inline(always)]
+    fn cells<const RHO: u8>(self, node: u16, index: usize) -> usize {
+        Coding::cells(self, node, index) as usize
+    }
+
+    #[inline(always)]
+    fn flags<const RHO: u8>(self, drawn: u16, index: usize) -> Flags {
+        Flags::from_bits(self.drawn_flags(drawn, index) as u16)
+    }
+
+    #[inline(always)]
+    fn drawn<const RHO: u8>(self, drawn: u16, index: usize) -> (u32, usize) {
+        let (record, cells) = Coding::drawn(self, drawn, index);
+        (record, cells as usize)
     }
 }

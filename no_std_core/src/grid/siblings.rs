@@ -4,7 +4,6 @@
 //! around its parent, so that tables are filled once for all of them.
 
 use super::affine::Affine;
-use super::decoded::Below;
 use super::facing::Facing;
 use super::footprint::Place;
 use super::normals::{Around, Normals};
@@ -17,7 +16,7 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
     /// Draws what lies SPAN levels below the children of a cell. `false`, with
     /// nothing done, if such subtrees do not fit a window.
     #[inline(never)]
-    pub(super) fn siblings<const RHO: u8, const SPAN: usize, const CODED: bool>(
+    pub(super) fn siblings<const RHO: u8, const SPAN: usize>(
         &self,
         cell: &Cell,
         record: &Record<RHO>,
@@ -32,13 +31,10 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
         if !self.map_around::<RHO, SPAN>(cell, at, bottom, normals, &mut affine) {
             return false;
         }
-        let Some(below) = Below::at(self.grid, usize::from(bottom)) else {
-            return false;
-        };
         let radius = |depth| self.tables.extents(depth).eye_radius;
         let around = Around::new(cell.view, radius(cell.depth), radius(cell.depth + 1));
         let (stop, above) = (self.plan.stop(bottom), self.plan.stop(bottom - 1));
-        self.for_each_child::<RHO, CODED>(cell, record, |child, record, attribute| {
+        self.for_each_child::<RHO>(cell, record, |child, record, attribute| {
             let normals = around.normals(child.view);
             let w = child.centre.w;
             let facing = match self.plan.faces {
@@ -67,7 +63,6 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
                 normals: &normals,
                 facing,
                 affine: &affine,
-                below,
             };
             self.subtree::<RHO, SPAN>(&subtree, &place, output);
         });

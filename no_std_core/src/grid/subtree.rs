@@ -2,7 +2,6 @@
 
 use super::affine::Affine;
 use super::blocks::block;
-use super::decoded::Below;
 use super::facing::Facing;
 use super::footprint::Place;
 use super::normals::Normals;
@@ -34,9 +33,6 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
         {
             return false;
         }
-        let Some(below) = Below::at(self.grid, usize::from(bottom)) else {
-            return false;
-        };
         if cell.inside || self.is_near_strip(&place, output) {
             let subtree = Subtree {
                 cell,
@@ -47,7 +43,6 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
                     false => Facing::Toward,
                 },
                 affine: &affine,
-                below,
             };
             self.subtree::<RHO, SPAN>(&subtree, &place, output);
         }
@@ -58,24 +53,23 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
     #[inline(always)]
     pub(super) fn subtree<const RHO: u8, const SPAN: usize>(
         &self,
-        subtree: &Subtree<'_, 'a, RHO>,
+        subtree: &Subtree<'_, RHO>,
         place: &Place,
         output: &mut Output<'_, '_, 'a>,
     ) {
-        let affine = subtree.affine;
+        let Subtree { cell, affine, .. } = subtree;
         let start = place.step().packed_in_window();
         let start = start.wrapping_add(affine.brush.offset());
+        let bottom = usize::from(cell.depth) + SPAN;
         let window = output
             .canvas
             .window(place.x >> SCREEN_BITS, place.y >> SCREEN_BITS);
-        let Some(window) = window else {
+        let (Some(level), Some(window)) = (self.grid.levels().get(bottom), window) else {
             return;
         };
-        let level = subtree.below.level;
         let (queue, stats) = (&mut output.queue, &mut *output.stats);
         let blocks = match (SPAN, subtree.facing) {
             (1, _) => block::<RHO>(subtree, level, start, queue),
-            _ if subtree.below.is_coded() => self.coded_blocks(subtree, start, queue, stats),
             (_, Facing::Toward) => self.blocks::<RHO, false>(subtree, level, start, queue, stats),
             _ => self.blocks::<RHO, true>(subtree, level, start, queue, stats),
         };
@@ -89,13 +83,11 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
 }
 
 /// What a subtree is drawn from.
-pub(super) struct Subtree<'a, 'g, const RHO: u8> {
+pub(super) struct Subtree<'a, const RHO: u8> {
     pub cell: &'a Cell,
     pub record: &'a Record<RHO>,
     pub normals: &'a Normals,
     /// How all of it faces.
     pub facing: Facing,
     pub affine: &'a Affine,
-    /// The level that is drawn.
-    pub below: Below<'a, 'g, RHO>,
 }

@@ -9,15 +9,15 @@
 
 use super::blocks::Queue;
 use super::clip::{Clip, Side};
-use super::decoded::Below;
 use super::facing::EyeSpace;
 use super::footprint::{Place, is_beside, near_limit};
 use super::mask;
 use super::normals::Normals;
 use super::packed::Block;
-use super::record::Record;
+use super::record::{Record, link_of, record_of};
 use super::tables::{Point, Tables};
 use crate::asset::Grid;
+use crate::asset::coded::Coding;
 use crate::camera::Camera;
 use crate::canvas::Canvas;
 use crate::plan::Plan;
@@ -119,17 +119,16 @@ fn run<const RHO: u8, const CELLS: usize, const LEVELS: usize>(
 
 impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
     fn start<const RHO: u8>(&self, root: &Cell, output: &mut Output<'_, '_, 'a>) {
-        let top = self.grid.levels().first();
-        let Some(&attribute) = top.and_then(|top| top.attributes.first()) else {
+        let levels = self.grid.levels();
+        let (Some(top), next) = (levels.first(), levels.get(1)) else {
             return;
         };
-        match Below::<RHO>::at(self.grid, 1) {
+        let Some(&attribute) = top.attributes.first() else {
+            return;
+        };
+        match next {
             Some(next) if self.plan.depth > 0 => {
-                let record = match next.is_coded() {
-                    false => next.record::<false>(0),
-                    true => next.record::<true>(0),
-                };
-                if let Some(record) = record {
+                if let Some(record) = record_of::<RHO>(next, self.coding::<RHO>(1), 0) {
                     self.node::<RHO>(root, &record, attribute, output);
                 }
             }
@@ -198,43 +197,17 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
             }
             return;
         }
-        // Children of both kinds of levels are compiled by themselves: plain ones
-        // do not pay for coded ones.
-        let is_coded = Below::<RHO>::at(self.grid, usize::from(cell.depth) + 2)
-            .is_some_and(|below| below.is_coded());
         let is_drawn = if stops(2) {
             packs(2) && self.packed::<RHO, 2>(cell, record, attribute, normals, output)
-                || shares(1)
-                    && match is_coded {
-                        false => self.siblings::<RHO, 1, false>(cell, record, normals, output),
-                        true => self.siblings::<RHO, 1, true>(cell, record, normals, output),
-                    }
+                || shares(1) && self.siblings::<RHO, 1>(cell, record, normals, output)
         } else {
-            stops(3)
-                && shares(2)
-                && match is_coded {
-                    false => self.siblings::<RHO, 2, false>(cell, record, normals, output),
-                    true => self.siblings::<RHO, 2, true>(cell, record, normals, output),
-                }
+            stops(3) && shares(2) && self.siblings::<RHO, 2>(cell, record, normals, output)
         };
-        match is_coded {
-            _ if is_drawn => {}
-            false => self.visit_children::<RHO, false>(cell, record, output),
-            true => self.visit_children::<RHO, true>(cell, record, output),
+        if !is_drawn {
+            self.for_each_child::<RHO>(cell, record, |child, record, attribute| {
+                self.node::<RHO>(&child, &record, attribute, output);
+            });
         }
-    }
-
-    /// Visits the children of a cell.
-    #[inline(always)]
-    fn visit_children<const RHO: u8, const CODED: bool>(
-        &self,
-        cell: &Cell,
-        record: &Record<RHO>,
-        output: &mut Output<'_, '_, 'a>,
-    ) {
-        self.for_each_child::<RHO, CODED>(cell, record, |child, record, attribute| {
-            self.node::<RHO>(&child, &record, attribute, output);
-        });
     }
 
     /// Where a cell lies. Of cells next to the eye the strip tells nothing, but
@@ -254,7 +227,7 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
     /// their records and attributes: in file order, first those that are drawn
     /// at their depth, then the others.
     #[inline(always)]
-    pub(super) fn for_each_child<const RHO: u8, const CODED: bool>(
+    pub(super) fn for_each_child<const RHO: u8>(
         &self,
         cell: &Cell,
         record: &Record<RHO>,
@@ -263,17 +236,17 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
         let table = self.tables.below(cell.depth);
         let below = usize::from(cell.depth) + 1;
         let levels = self.grid.levels();
-        let next = Below::<RHO>::at(self.grid, below + 1);
-        let (Some(level), Some(next)) = (levels.get(below), next) else {
+        let (Some(level), Some(next)) = (levels.get(below), levels.get(below + 1)) else {
             return;
         };
-        let mut first_child = next.link::<CODED>(cell.index);
+        let coding = self.coding::<RHO>(cell.depth + 2);
+        let mut first_child = link_of(next, coding, cell.index);
         let mut children = cell.first_child..;
         for mask in mask::in_file_order(record) {
             for (word, offset) in mask.words().zip((0..).step_by(mask::cells(RHO))) {
                 for (bit, index) in mask::bits(word).zip(children.by_ref()) {
-                    let (Some(&attribute), Some(record)) =
-                        (level.attributes.get(index), next.record::<CODED>(index))
+                    let record = record_of::<RHO>(next, coding, index);
+                    let (Some(&attribute), Some(record)) = (level.attributes.get(index), record)
                     else {
                         return;
                     };
@@ -295,6 +268,15 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
                     visit(child, record, attribute);
                 }
             }
+        }
+    }
+
+    /// How the level of a depth is coded, if it is a tri-grid's and is.
+    #[inline(always)]
+    pub(super) fn coding<const RHO: u8>(&self, depth: u8) -> Option<&'a Coding<'a>> {
+        match RHO {
+            3 => self.grid.coding(usize::from(depth)),
+            _ => None,
         }
     }
 

@@ -170,20 +170,34 @@ impl<'a> Coding<'a> {
         self.flags[usize::from(code) % FLAGS]
     }
 
-    /// The number of a node's cells, and its flags.
+    /// The number of a node's cells.
     #[inline(always)]
-    pub(crate) fn node(&self, node: u16, index: usize) -> (u32, u32) {
+    pub(crate) fn cells(&self, node: u16, index: usize) -> u32 {
         if node < FIRST_ESCAPE {
-            return (self.mask(node) >> MASK_BITS, self.flags(node));
+            return self.mask(node) >> MASK_BITS;
         }
-        let record = self.escape(node, index, self.node_starts);
-        ((record & MASK).count_ones(), record & !MASK)
+        (self.escape(node, index, self.node_starts) & MASK).count_ones()
     }
 
-    /// What is drawn of a node.
+    /// The flags of what is drawn of a node, as five bits.
     #[inline(always)]
-    pub(crate) fn drawn(&self, drawn: u16, index: usize) -> u32 {
-        self.record(drawn, index, self.drawn_starts)
+    pub(crate) fn drawn_flags(&self, drawn: u16, index: usize) -> u32 {
+        let record = match drawn < FIRST_ESCAPE {
+            true => self.flags(drawn),
+            false => self.escape(drawn, index, self.drawn_starts),
+        };
+        record >> MASK_BITS
+    }
+
+    /// What is drawn of a node, and the number of these cells.
+    #[inline(always)]
+    pub(crate) fn drawn(&self, drawn: u16, index: usize) -> (u32, u32) {
+        if drawn < FIRST_ESCAPE {
+            let mask = self.mask(drawn);
+            return (mask & MASK | self.flags(drawn), mask >> MASK_BITS);
+        }
+        let record = self.escape(drawn, index, self.drawn_starts);
+        (record, (record & MASK).count_ones())
     }
 
     /// The records that a node's code and that of what is drawn of it stand

@@ -53,11 +53,15 @@ impl<'a> Coding<'a> {
         match self.0 {}
     }
 
-    pub(crate) fn node(&self, _: u16, _: usize) -> (u32, u32) {
+    pub(crate) fn cells(&self, _: u16, _: usize) -> u32 {
         match self.0 {}
     }
 
-    pub(crate) fn drawn(&self, _: u16, _: usize) -> u32 {
+    pub(crate) fn drawn_flags(&self, _: u16, _: usize) -> u32 {
+        match self.0 {}
+    }
+
+    pub(crate) fn drawn(&self, _: u16, _: usize) -> (u32, u32) {
         match self.0 {}
     }
 
