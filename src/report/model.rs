@@ -11,6 +11,7 @@ use rhogrid_core::draw::{Light, Quality};
 use super::Progress;
 use super::effort::Effort;
 use super::row::{normals_name, shell_name};
+use super::timing::Call;
 use crate::asset_file::AssetFile;
 use crate::bake::{self, BakedGrid, Cube, GridOptions, writer};
 use crate::cli::{
@@ -199,6 +200,17 @@ impl Model {
         let views = self.views.iter();
         let camera = |view| core_camera(view, &asset.grid(), &asset.cube());
         views.map(camera).collect()
+    }
+
+    /// The draw call of each view.
+    pub fn calls<'a>(&self, asset: &'a AssetFile, quality: Quality) -> Vec<Call<'a>> {
+        let grid = asset.grid();
+        let call = |camera| Call {
+            grid: grid.clone(),
+            camera,
+            quality,
+        };
+        self.cameras(asset).into_iter().map(call).collect()
     }
 
     /// Draws the core's frame of each view.

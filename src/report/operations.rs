@@ -13,7 +13,7 @@ use rhogrid_core::numbers::SplatPx;
 use super::memory::{RHOS, bake_at};
 use super::page::Table;
 use super::row::{Row, Setting, Subject};
-use super::timing::{Call, medians};
+use super::timing::medians;
 use super::{Chapter, Means, Model};
 use crate::bake::GridOptions;
 use crate::cli::{Description, Frame};
@@ -133,13 +133,7 @@ fn frames(
     let baked: Vec<_> = baked.into_iter().collect::<Result<_, _>>()?;
     let mut calls = Vec::new();
     for own in &baked {
-        let grid = own.asset.grid();
-        let call = |camera| Call {
-            grid: grid.clone(),
-            camera,
-            quality,
-        };
-        calls.extend(model.cameras(&own.asset).into_iter().map(call));
+        calls.extend(model.calls(&own.asset, quality));
     }
     let times = medians(&calls, means.effort.rounds);
     let mut rows = Vec::new();

@@ -13,7 +13,7 @@ use rhogrid_core::numbers::SplatPx;
 
 use super::float::{Cells, Place, draw};
 use super::row::{Row, Setting, Subject};
-use super::timing::{Call, medians};
+use super::timing::medians;
 use super::{Chapter, Means, Model, Plot};
 use crate::bake::{GridOptions, Normals};
 use crate::cli::Frame;
@@ -138,13 +138,7 @@ fn frames(model: &Model, means: Means<'_>) -> Result<Vec<Row>, Error> {
     (means.progress)(&format!("{}: draws {} settings", model.name, assets.len()));
     let mut calls = Vec::new();
     for ((_, quality), own) in settings().zip(&assets) {
-        let grid = own.asset.grid();
-        let call = |camera| Call {
-            grid: grid.clone(),
-            camera,
-            quality,
-        };
-        calls.extend(model.cameras(&own.asset).into_iter().map(call));
+        calls.extend(model.calls(&own.asset, quality));
     }
     let times = medians(&calls, means.effort.rounds);
     let mut rows = Vec::new();
