@@ -98,6 +98,8 @@ impl Normals {
         }
     }
 
+    /// A normal's component along the view, [`TEST_ONE`] to one, added to a
+    /// number.
     #[inline(always)]
     fn along(&self, code: u16, from: i32) -> i32 {
         let [x, y, z] = coarse(code);
