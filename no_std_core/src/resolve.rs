@@ -45,6 +45,7 @@ pub(crate) fn resolve(
     let repair = repair.filter(|_| cfg!(feature = "repair"));
     let strip = canvas.strip;
     let (columns, rows) = canvas.touched();
+    let mut above = [0; 2];
     for row in strip.top..strip.bottom {
         let drawn = if rows.contains(&row) {
             columns.clone()
@@ -60,11 +61,16 @@ pub(crate) fn resolve(
         if let Some(colours) = picture.colours(drawn.clone(), row) {
             match (repair, shader.table_of_one()) {
                 (None, _) => plain_row(words, shader, colours),
-                (Some(gap), None) => row_of(words, gap, colours, |word| shader.colour_of(word)),
-                (Some(gap), Some(table)) => row_of(words, gap, colours, |word| match word {
-                    0 => 0,
-                    _ => table[word as usize % table.len()],
-                }),
+                (Some(gap), None) => {
+                    row_of(words, &mut above, gap, colours, |word| {
+                        shader.colour(word as u16)
+                    });
+                }
+                (Some(gap), Some(table)) => {
+                    row_of(words, &mut above, gap, colours, |word| {
+                        table[word as usize % table.len()]
+                    });
+                }
             }
         }
         if let Some(depths) = picture.depths(drawn, row) {
@@ -79,56 +85,61 @@ fn plain_row(words: &[u32], shader: &Shader<'_>, colours: &mut [u16]) {
     }
 }
 
-/// Leaves out what is empty at the row's two ends, four pixels at a time.
+/// Least numbers of empty words at a line's two ends, four at a time.
+fn empty_ends(line: &[u32]) -> [usize; 2] {
+    let is_empty = |&&[a, b, c, d]: &&[u32; 4]| a | b | c | d == 0;
+    let ahead = line.as_chunks().0.iter().take_while(is_empty);
+    let behind = line.as_rchunks().1.iter().rev().take_while(is_empty);
+    [4 * ahead.count(), 4 * behind.count()]
+}
+
+/// A row of colours, `colour` being that of what is drawn. Its empty ends are
+/// left out: `above` is how much of the row above is known to be empty, and
+/// then how much of this one.
 #[inline(never)]
-fn row_of(words: &[u32], gap: Gap, colours: &mut [u16], colour_of: impl Fn(u32) -> u16) {
+fn row_of(
+    words: &[u32],
+    above: &mut [usize; 2],
+    gap: Gap,
+    colours: &mut [u16],
+    colour: impl Fn(u32) -> u16,
+) {
     // A hole has something on two sides, and so beside it or above it.
-    let is_empty =
-        |([a, b, c, d], [e, f, g, h]): (&[u32; 4], &[u32; 4])| a | b | c | d | e | f | g | h == 0;
-    let line = |start: usize| words.get(start..start + colours.len() + 2).unwrap_or(&[]);
-    let (above, own) = (line(PITCH), line(2 * PITCH));
-    let fours = above.as_chunks().0.iter().zip(own.as_chunks().0);
-    let ahead = fours.take_while(|&four| is_empty(four)).count();
-    let fours = above.as_rchunks().1.iter().zip(own.as_rchunks().1);
-    let behind = fours.rev().take_while(|&four| is_empty(four)).count();
+    let line = words.get(2 * PITCH..2 * PITCH + colours.len() + 2);
+    let own = line.map_or([0; 2], empty_ends);
+    let ahead = above[0].min(own[0]);
+    let behind = above[1].min(own[1]);
+    *above = own;
     // Lines begin one pixel before the colours and end one behind them.
-    let first = (4 * ahead).saturating_sub(2).min(colours.len());
+    let first = ahead.saturating_sub(2).min(colours.len());
     let rest = colours.len() - first;
-    let last = (4 * behind).saturating_sub(2).min(rest);
+    let last = behind.saturating_sub(2).min(rest);
     let (before, inner) = colours.split_at_mut(first);
     let (inner, after) = inner.split_at_mut(rest - last);
     blank(before);
     blank(after);
     let around = words.get(first..).unwrap_or(&[]).array_windows();
-    for (colour, around) in inner.iter_mut().zip(around) {
-        *colour = pixel(around, gap, &colour_of);
+    for (own, around) in inner.iter_mut().zip(around) {
+        *own = pixel(around, gap, &colour);
     }
 }
 
-/// Most pixels are far from any hole: on one of both sides no neighbour is
-/// nearer than by the least gap, and nothing else is looked at.
+/// Most pixels are far from any hole: of what lies before them nothing is
+/// nearer by the least gap, and nothing else is looked at.
 #[inline(always)]
-fn pixel(around: &Neighbourhood, gap: Gap, colour_of: &impl Fn(u32) -> u16) -> u16 {
+fn pixel(around: &Neighbourhood, gap: Gap, colour: &impl Fn(u32) -> u16) -> u16 {
     let own = around[OWN];
-    let least = gap.least(own);
-    let before = OPPOSITE.map(|offset| around[OWN - offset]);
-    if before.into_iter().all(|word| word <= least) {
-        return colour_of(own);
+    let ahead = around[OWN - PITCH + 1];
+    let nearest = ahead.max(around[OWN - PITCH]).max(around[OWN - PITCH - 1]);
+    let least = own.saturating_add(gap.base);
+    if own != 0 && nearest <= least && around[OWN - 1] <= least {
+        return colour(own);
     }
-    let behind = OPPOSITE.map(|offset| around[OWN + offset]);
-    if behind.into_iter().all(|word| word <= least) {
-        return colour_of(own);
-    }
-    match closing(around, gap) {
+    let colour_of = |word| if word == 0 { 0 } else { colour(word) };
+    match hole(around, gap) {
         None => colour_of(own),
         Some([first, second]) => mean(colour_of(first), colour_of(second)),
     }
-}
-
-/// [`hole`], out of the way of the many pixels that are none.
-#[inline(never)]
-fn closing(around: &Neighbourhood, gap: Gap) -> Option<[u32; 2]> {
-    hole(around, gap)
 }
 
 fn depth_row(words: &[u32], repair: Option<Gap>, depths: &mut [u16]) {
@@ -142,16 +153,6 @@ fn depth_row(words: &[u32], repair: Option<Gap>, depths: &mut [u16]) {
 }
 
 impl Gap {
-    /// A lower bound of [`Gap::limit`].
-    #[inline(always)]
-    fn least(self, word: u32) -> u32 {
-        if word == 0 {
-            0
-        } else {
-            word.saturating_add(self.base)
-        }
-    }
-
     /// What a neighbour exceeds if it is nearer by the gap.
     #[inline(always)]
     fn limit(self, word: u32) -> u32 {
@@ -168,18 +169,30 @@ impl Gap {
 #[inline(always)]
 fn hole(around: &Neighbourhood, gap: Gap) -> Option<[u32; 2]> {
     let limit = gap.limit(around[OWN]);
-    let (mut before, mut behind) = (0, 0);
-    let mut is_between = false;
-    for offset in OPPOSITE {
-        let is_nearer = [around[OWN - offset] > limit, around[OWN + offset] > limit];
-        is_between |= is_nearer == [true; 2];
-        before += u32::from(is_nearer[0]);
-        behind += u32::from(is_nearer[1]);
+    let before = OPPOSITE.map(|offset| around[OWN - offset]);
+    if before.into_iter().all(|word| word <= limit) {
+        return None;
     }
-    if is_between {
-        return Some(closest(around));
+    let behind = OPPOSITE.map(|offset| around[OWN + offset]);
+    if behind.into_iter().all(|word| word <= limit) {
+        return None;
     }
-    if before == 0 || behind == 0 || before + behind < 4 {
+    closing(around, limit)
+}
+
+/// The same where neighbours on both sides are nearer than the limit.
+#[inline(never)]
+fn closing(around: &Neighbourhood, limit: u32) -> Option<[u32; 2]> {
+    let pairs = OPPOSITE.map(|offset| [around[OWN - offset], around[OWN + offset]]);
+    let deeper = pairs.map(|[before, behind]| before.min(behind));
+    let nearest = deeper.into_iter().fold(0, u32::max);
+    if nearest > limit {
+        return pairs
+            .into_iter()
+            .find(|&[before, behind]| before.min(behind) == nearest);
+    }
+    let nearer = pairs.into_iter().flatten().filter(|&word| word > limit);
+    if nearer.count() < 4 {
         return None;
     }
     let long = [
@@ -188,22 +201,6 @@ fn hole(around: &Neighbourhood, gap: Gap) -> Option<[u32; 2]> {
     ];
     long.into_iter()
         .find(|&[above, below]| above > limit && below > limit)
-}
-
-/// The opposite neighbours whose deeper one is nearest; of equally deep pairs
-/// the first counts.
-#[inline(never)]
-fn closest(around: &Neighbourhood) -> [u32; 2] {
-    let pairs = OPPOSITE.map(|offset| [around[OWN - offset], around[OWN + offset]]);
-    let (mut closest, mut nearest) = ([0; 2], 0);
-    for pair in pairs {
-        let deeper = pair[0].min(pair[1]);
-        if deeper > nearest {
-            nearest = deeper;
-            closest = pair;
-        }
-    }
-    closest
 }
 
 /// The mean of two RGB565 colours, each channel rounded down.
