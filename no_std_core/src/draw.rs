@@ -86,9 +86,11 @@ pub fn draw(
     let shader = stages::shade(light, grid.materials(), shades);
     let mut stats = Stats::default();
     for strip in target.strips() {
-        let mut canvas = stages::clear(target.canvas, strip);
-        traverse(grid, camera, &projection, &plan, &mut canvas, &mut stats);
-        stages::resolve(&canvas, &plan, &shader, &mut target.picture);
+        let mut canvas = stages::clear(target.canvas, strip.intersection(plan.part));
+        if canvas.strip.pixels() > 0 {
+            traverse(grid, camera, &projection, &plan, &mut canvas, &mut stats);
+        }
+        stages::resolve(&canvas, strip, &plan, &shader, &mut target.picture);
     }
     stats
 }

@@ -72,6 +72,9 @@ pub struct Plan {
     /// Whether cells are tested against the picture's sides: not where it
     /// holds the cube. Strips of it have sides of their own.
     pub(crate) culls: bool,
+    /// The part of the picture that holds what is drawn: where all cells are
+    /// small, no more than the cube's surroundings.
+    pub(crate) part: Rect,
     /// Least and largest w of the cube, block units.
     range: [i32; 2],
     /// See [`Projection::w_scale`].
@@ -117,6 +120,13 @@ impl Plan {
             repair: quality.repair.then(|| lens.gap(projection, quality)),
             faces: quality.culling && !grid.two_sided(),
             shows_all: !quality.culling,
+            part: part(
+                &levels[usize::from(depth) % MAX_LEVELS],
+                rho,
+                quality,
+                projection,
+                picture,
+            ),
             culls: !projection.holds_cube(picture),
             range,
             w_scale: projection.w_scale,
@@ -140,4 +150,22 @@ impl Plan {
     pub(crate) fn level(&self, depth: u8) -> &LevelPlan {
         &self.levels[usize::from(depth) % MAX_LEVELS]
     }
+}
+
+/// See [`Plan::part`]. `deepest` is the plan of the deepest cells, which are
+/// the smallest: larger ones, where they are drawn, are less than rho times as
+/// large.
+fn part(
+    deepest: &LevelPlan,
+    rho: i64,
+    quality: &Quality,
+    projection: &Projection,
+    picture: Rect,
+) -> Rect {
+    if projection.range()[0] < deepest.wide {
+        return picture;
+    }
+    // So far an affine place may lie off, and all of a sample beyond that.
+    let margin = quality.distortion.to_num::<i32>() + 2 * rho as i32 + 2;
+    projection.part(picture, margin)
 }

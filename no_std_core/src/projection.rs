@@ -31,6 +31,8 @@
 //! bits (the eye's products keep 40 fraction bits, the focal length 31), w
 //! within 2^-31. What becomes of that on the screen: see `grid/tables.rs`.
 
+mod part;
+
 use crate::camera::Camera;
 use crate::numbers::{Length, SCREEN_BITS, ScreenPx, bit_length, shift_round};
 use crate::reciprocal::{Reciprocal, reciprocal};

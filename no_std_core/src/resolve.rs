@@ -13,7 +13,7 @@
 
 use crate::canvas::{Canvas, PITCH};
 use crate::shade::Shader;
-use crate::target::{Picture, blank};
+use crate::target::{Picture, Rect, blank};
 
 /// How much nearer a neighbour is, depth << 16, to make a hole of a pixel
 /// that shows `word`.
@@ -35,15 +35,16 @@ const OWN: usize = 2 * PITCH + 1;
 /// before it.
 const OPPOSITE: [usize; 4] = [1, PITCH, PITCH + 1, PITCH - 1];
 
-/// Writes a strip's colours, and depths where they are asked for.
+/// Writes a strip's colours, and depths where they are asked for. What lies
+/// beyond the canvas is empty.
 pub(crate) fn resolve(
     canvas: &Canvas<'_>,
+    strip: Rect,
     repair: Option<Gap>,
     shader: &Shader<'_>,
     picture: &mut Picture<'_>,
 ) {
     let repair = repair.filter(|_| cfg!(feature = "repair"));
-    let strip = canvas.strip;
     let (columns, rows) = canvas.touched();
     let mut above = [0; 2];
     for row in strip.top..strip.bottom {
@@ -54,6 +55,9 @@ pub(crate) fn resolve(
         };
         for beside in [strip.left..drawn.start, drawn.end..strip.right] {
             picture.blank(beside, row);
+        }
+        if drawn.is_empty() {
+            continue;
         }
         let Some(words) = canvas.neighbourhoods(&drawn, row) else {
             return;

@@ -33,6 +33,19 @@ impl Rect {
         self.bottom.saturating_sub(self.top) as usize
     }
 
+    /// What two rectangles share; without pixels, and within this one, if that
+    /// is nothing.
+    pub(crate) fn intersection(&self, other: Self) -> Self {
+        let [left, right] = [other.left, other.right].map(|at| at.max(self.left).min(self.right));
+        let [top, bottom] = [other.top, other.bottom].map(|at| at.max(self.top).min(self.bottom));
+        Self {
+            left,
+            top,
+            right,
+            bottom,
+        }
+    }
+
     /// Pixels, which is also the length of the colour and depth buffers.
     pub const fn pixels(&self) -> usize {
         self.width() * self.height()

@@ -237,6 +237,7 @@ fn verbose_text_says_more() {
     let text = folder.done(&format!("render cube.obj -o a.png {SMALL} --compare -v"));
     let plan = [
         "draws cells of depth",
+        "part     columns",
         "sides",
         "facing",
         "one material",

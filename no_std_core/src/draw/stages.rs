@@ -25,9 +25,10 @@ pub(super) fn clear(words: &mut [u32], strip: Rect) -> Canvas<'_> {
 #[inline(never)]
 pub(super) fn resolve(
     canvas: &Canvas<'_>,
+    strip: Rect,
     plan: &Plan,
     shader: &Shader<'_>,
     picture: &mut Picture<'_>,
 ) {
-    crate::resolve::resolve(canvas, plan.repair, shader, picture);
+    crate::resolve::resolve(canvas, strip, plan.repair, shader, picture);
 }

@@ -4,6 +4,7 @@ use core::fmt::{Display, Formatter, Result};
 
 use super::{NEVER, Plan};
 use crate::numbers::{Length, shift_round};
+use crate::target::Rect;
 
 /// A distance in half sides, or none.
 struct Distance {
@@ -46,6 +47,16 @@ impl Display for Plan {
         writeln!(
             f,
             "draws cells of depth {first} to {last} of {leaves}; the cube lies {nearest} to {farthest} away"
+        )?;
+        let Rect {
+            left,
+            top,
+            right,
+            bottom,
+        } = self.part;
+        writeln!(
+            f,
+            "part     columns {left} to {right}, rows {top} to {bottom}; beyond it nothing is cleared or drawn"
         )?;
         let sides = match self.culls {
             true => "cells are tested against them until one is inside",

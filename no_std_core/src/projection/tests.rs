@@ -231,3 +231,41 @@ fn far_eyes_keep_the_order_of_depths() {
         }
     }
 }
+
+#[test]
+fn the_part_of_the_picture_holds_every_point_of_the_cube() {
+    let mut rng = Rng::with_seed(24);
+    let mut smaller = 0;
+    for case in 0..20_000 {
+        let camera = camera(&mut rng, 1e3, 4096.0);
+        let projection = Projection::new(&camera);
+        let exact = Exact::new(&camera);
+        let picture = Rect {
+            left: 0,
+            top: 0,
+            right: camera.width,
+            bottom: camera.height,
+        };
+        let part = projection.part(picture, 0);
+        assert_eq!(part, picture.intersection(part), "case {case}");
+        smaller += usize::from(part != picture);
+        for _ in 0..8 {
+            let point = [0; 3].map(|_| rng.f64() * 2.0 - 1.0);
+            let forms = exact.forms(point);
+            let [x, y] = exact.screen(forms);
+            let is_seen = forms[2] > 0.0
+                && (0.0..f64::from(camera.width)).contains(&x)
+                && (0.0..f64::from(camera.height)).contains(&y);
+            let within =
+                |at: f64, low: u16, high: u16| at >= f64::from(low) && at < f64::from(high);
+            assert!(
+                !is_seen || within(x, part.left, part.right) && within(y, part.top, part.bottom),
+                "case {case}: {x}, {y} is not in {part:?}\n{camera:?}"
+            );
+        }
+    }
+    assert!(
+        smaller > 2000,
+        "{smaller} parts are smaller than the picture"
+    );
+}

@@ -110,7 +110,7 @@ fn pixels_are_those_of_the_definition() {
         let mut target = Target::new(width, height, &mut colour, &mut unused)
             .and_then(|target| target.with_depth(&mut depth))
             .expect("buffers fit");
-        resolve(&canvas, Some(gap), &shader, &mut target.picture);
+        resolve(&canvas, strip, Some(gap), &shader, &mut target.picture);
         for index in 0..pixels {
             let (x, y) = (index % usize::from(width), index / usize::from(width));
             let want = shown(&words, x + 1, y + 2, gap);
