@@ -72,7 +72,8 @@ pub const fn shades_len(material_count: usize) -> usize {
 /// Clears the target and draws a grid into it. Cannot fail.
 ///
 /// `shades` is memory for a frame's colours, [`shades_len`] words; where it
-/// is shorter, pixels are shaded one by one, to the same bytes.
+/// is shorter, or where few pixels can show anything, they are shaded one by
+/// one, to the same bytes.
 pub fn draw(
     grid: &Grid<'_>,
     camera: &Camera,
@@ -83,6 +84,7 @@ pub fn draw(
 ) -> Stats {
     let projection = Projection::new(camera);
     let plan = Plan::with(grid, camera, quality, &projection);
+    let shades = if plan.tabulates { shades } else { &mut [] };
     let shader = stages::shade(light, grid.materials(), shades);
     let mut stats = Stats::default();
     for strip in target.strips() {

@@ -27,6 +27,10 @@ const POINT_PX: i64 = 18 << 12;
 const WIDE_PX: i64 = 24 << 12;
 /// How much nearer a hole's neighbours are, in cells.
 const GAP_CELLS: i64 = 2;
+/// A part of the picture with fewer pixels, for each material, is shaded pixel
+/// by pixel: a table takes as long as 2,800 of them, and a scan covers a
+/// quarter to a third of its cube's part.
+const FEW_PIXELS: usize = 8000;
 /// Never: no cell is so far away.
 const NEVER: i32 = i32::MAX;
 /// From where on cells of one depth are small enough, block units of w.
@@ -75,6 +79,8 @@ pub struct Plan {
     /// The part of the picture that holds what is drawn: where all cells are
     /// small, no more than the cube's surroundings.
     pub(crate) part: Rect,
+    /// Whether colours are tabulated before they are used.
+    pub(crate) tabulates: bool,
     /// Least and largest w of the cube, block units.
     range: [i32; 2],
     /// See [`Projection::w_scale`].
@@ -114,24 +120,27 @@ impl Plan {
             right: camera.width,
             bottom: camera.height,
         };
+        let part = part(
+            &levels[usize::from(depth) % MAX_LEVELS],
+            rho,
+            quality,
+            projection,
+            picture,
+        );
+        let materials = grid.materials().len();
         Self {
             levels,
             depth,
             repair: quality.repair.then(|| lens.gap(projection, quality)),
             faces: quality.culling && !grid.two_sided(),
             shows_all: !quality.culling,
-            part: part(
-                &levels[usize::from(depth) % MAX_LEVELS],
-                rho,
-                quality,
-                projection,
-                picture,
-            ),
+            part,
+            tabulates: part.pixels() >= FEW_PIXELS * materials,
             culls: !projection.holds_cube(picture),
             range,
             w_scale: projection.w_scale,
             leaves: grid.depth(),
-            materials: grid.materials().len() as u8,
+            materials: materials as u8,
         }
     }
 

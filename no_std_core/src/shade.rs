@@ -4,7 +4,7 @@
 //! attribute goes into a table (16 KB a material); where the caller gives no
 //! memory for it, samples are shaded one by one, to the same bytes.
 
-use crate::asset::Rgb;
+use crate::asset::{MAX_MATERIALS, Rgb};
 use crate::draw::Light;
 use crate::normal::{CODES, OCTANT, OCTANT_CODES, decode};
 
@@ -15,15 +15,18 @@ const STEPS: usize = 512;
 
 /// What shading needs to know of light and materials.
 #[derive(Clone, Copy)]
-struct Model<'a> {
-    materials: &'a [Rgb],
+struct Model {
+    /// By material; black behind the last.
+    ramps: [Ramp; MAX_MATERIALS],
+    /// How many materials there are.
+    count: usize,
     /// Towards the light, times the diffuse weight, Q2.14.
     towards: [i32; 3],
     /// Weight, Q1.15, with half a step.
     ambient: i32,
 }
 
-impl Model<'_> {
+impl Model {
     /// Brightness for Lambert's cosine, weighted: 0 to [`STEPS`]. Q4.28.
     #[inline(always)]
     fn brightness(&self, dot: i32) -> usize {
@@ -40,16 +43,15 @@ impl Model<'_> {
     }
 
     fn colour(&self, attribute: u16) -> u16 {
-        let material = self.materials.get(usize::from(attribute >> 13));
-        let ramp = Ramp::new(material.copied().unwrap_or([0; 3]));
+        let ramp = &self.ramps[usize::from(attribute >> 13) % MAX_MATERIALS];
         ramp.colour(self.brightness_of(attribute))
     }
 
     /// Fills the table, material after material.
     fn fill(&self, table: &mut [u16]) {
-        for (colours, &material) in table.chunks_exact_mut(CODES).zip(self.materials) {
-            let ramp = Ramp::new(material).all();
-            self.fill_material(&ramp, colours);
+        let ramps = self.ramps.iter().take(self.count);
+        for (colours, ramp) in table.chunks_exact_mut(CODES).zip(ramps) {
+            self.fill_material(&ramp.all(), colours);
         }
     }
 
@@ -83,12 +85,15 @@ impl Model<'_> {
 
 /// A material's colours by brightness, RGB565, each channel rounded to
 /// nearest.
+#[derive(Clone, Copy)]
 struct Ramp {
     /// A step of each channel, Q22; 512 steps stay below 2^29.
     steps: [u32; 3],
 }
 
 impl Ramp {
+    const BLACK: Self = Self { steps: [0; 3] };
+
     fn new(material: Rgb) -> Self {
         let [red, green, blue] = material;
         let step = |value: u8, levels: u32| {
@@ -126,16 +131,21 @@ impl Ramp {
 
 /// Colours of attributes for one frame.
 pub(crate) struct Shader<'a> {
-    model: Model<'a>,
+    model: Model,
     table: &'a [u16],
 }
 
 impl<'a> Shader<'a> {
     /// Fills the table if `memory` holds it: 8192 words for each material.
-    pub fn new(light: &Light, materials: &'a [Rgb], memory: &'a mut [u16]) -> Self {
+    pub fn new(light: &Light, materials: &[Rgb], memory: &'a mut [u16]) -> Self {
         let diffuse = (light.diffuse.to_bits() >> 16) as i32;
+        let mut ramps = [Ramp::BLACK; MAX_MATERIALS];
+        for (ramp, &material) in ramps.iter_mut().zip(materials) {
+            *ramp = Ramp::new(material);
+        }
         let model = Model {
-            materials,
+            ramps,
+            count: materials.len(),
             // Q2.30 x Q1.15 to Q2.14.
             towards: light.towards.map(|c| {
                 let wide = i64::from(c.to_bits()) * i64::from(diffuse);

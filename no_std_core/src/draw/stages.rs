@@ -11,7 +11,7 @@ use crate::target::{Picture, Rect};
 
 /// The colours of a frame.
 #[inline(never)]
-pub(super) fn shade<'a>(light: &Light, materials: &'a [Rgb], memory: &'a mut [u16]) -> Shader<'a> {
+pub(super) fn shade<'a>(light: &Light, materials: &[Rgb], memory: &'a mut [u16]) -> Shader<'a> {
     Shader::new(light, materials, memory)
 }
 

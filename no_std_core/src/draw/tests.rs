@@ -238,9 +238,16 @@ fn bands_give_the_pixels_of_the_whole() {
 #[test]
 fn shading_without_memory_gives_the_same_bytes() {
     let mut rng = Rng::with_seed(63);
+    let mut tables = 0;
     for case in 0..200 {
-        let model = model(&mut rng, 200.0);
-        let camera = near_camera(&mut rng, 10.0, 64.0);
+        let mut model = model(&mut rng, 200.0);
+        if rng.bool() {
+            model.materials.truncate(1);
+            for cell in model.levels.iter_mut().flatten() {
+                cell.attribute &= CODES as u16 - 1;
+            }
+        }
+        let camera = near_camera(&mut rng, 3.0, 1024.0);
         let light = Light {
             towards: direction(&mut rng).map(Unit::from_num),
             ambient: Weight::from_num(rng.f64()),
@@ -248,6 +255,7 @@ fn shading_without_memory_gives_the_same_bytes() {
         };
         let bytes = aligned(&model.file().bytes());
         let grid = Grid::open(&bytes).expect("models are valid");
+        tables += u32::from(Plan::new(&grid, &camera, &quality(1.0)).tabulates);
         let length = shades_len(model.materials.len());
         let draw = |length: usize| {
             let mut shades = std::vec![0x5555; length];
@@ -266,6 +274,7 @@ fn shading_without_memory_gives_the_same_bytes() {
             assert_eq!(draw(length), want, "case {case}: {length} words");
         }
     }
+    assert!((20..180).contains(&tables), "{tables} of 200 with a table");
 }
 
 #[test]

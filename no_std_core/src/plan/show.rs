@@ -70,9 +70,10 @@ impl Display for Plan {
         };
         writeln!(f, "facing   {facing}")?;
         let materials = self.materials;
-        let colours = match materials {
-            1 => "one material, none is looked up",
-            _ => "by material",
+        let colours = match (self.tabulates, materials) {
+            (false, _) => "few pixels, each is shaded by itself",
+            (true, 1) => "one material, none is looked up",
+            (true, _) => "by material",
         };
         writeln!(f, "colours  {colours} ({materials})")?;
         let holes = match self.repair {
