@@ -1,0 +1,98 @@
+//! Light and knobs of a frame.
+
+use clap::{Args, ValueEnum};
+use rhogrid_core::draw::Quality;
+
+use super::super::Failure;
+use super::Triple;
+
+/// Whether and how a light casts shadows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum ShadowChoice {
+    /// No shadows
+    Off,
+    /// A shadow map of its own
+    TwoPass,
+    /// A shadow map in the same pass
+    OnePass,
+}
+
+/// How cells reach the screen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum PathChoice {
+    /// Additions where they err by a quarter of a pixel at most
+    Auto,
+    /// A reciprocal and a covering splat for each
+    Exact,
+    /// Additions wherever a subtree fits its window
+    Affine,
+}
+
+/// Whether pixels that points have missed are closed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum RepairChoice {
+    /// From their neighbours
+    On,
+    /// They stay holes
+    Off,
+}
+
+/// What becomes of what faces away.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum CullingChoice {
+    /// It is left out
+    On,
+    /// It is drawn like everything else, to measure what samples cost
+    Off,
+}
+
+/// Light and knobs of a frame.
+#[derive(Clone, Debug, Args)]
+pub struct QualityArgs {
+    /// World direction towards the light
+    #[arg(
+        long,
+        value_name = "X,Y,Z",
+        default_value = "1,2,1.5",
+        allow_hyphen_values = true
+    )]
+    pub light: Triple,
+    /// Cells with edges of at most this many pixels are one sample each
+    #[arg(
+        long,
+        value_name = "PX",
+        default_value_t = Quality::SPLAT.to_num(),
+        allow_negative_numbers = true
+    )]
+    pub splat: f64,
+    /// How cells are projected
+    #[arg(long, value_enum, default_value = "auto")]
+    pub path: PathChoice,
+    /// What becomes of pixels that points have missed
+    #[arg(long, value_enum, default_value = "on")]
+    pub repair: RepairChoice,
+    /// What becomes of what faces away
+    #[arg(long, value_enum, default_value = "on")]
+    pub culling: CullingChoice,
+    /// Shadows; for --reference alone, which traces rays
+    #[arg(long, value_enum, default_value = "off")]
+    pub shadows: ShadowChoice,
+}
+
+impl QualityArgs {
+    /// Checks what clap cannot.
+    ///
+    /// # Errors
+    /// When the light has no direction or the splat size is out of range.
+    pub fn check(&self) -> Result<(), Failure> {
+        if self.light.0.try_normalize().is_none() {
+            return Err(Failure::Usage(
+                "--light needs a direction other than 0,0,0".into(),
+            ));
+        }
+        if !(0.0..=4096.0).contains(&self.splat) {
+            return Err(Failure::Usage("--splat must be 0 to 4096 pixels".into()));
+        }
+        Ok(())
+    }
+}
