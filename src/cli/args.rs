@@ -8,7 +8,7 @@ use std::str::FromStr;
 
 use glam::DVec3;
 
-pub use quality::{CullingChoice, PathChoice, QualityArgs, RepairChoice, ShadowChoice};
+pub use quality::{CullingChoice, QualityArgs, RepairChoice, ShadowChoice};
 pub use source::SourceArgs;
 pub use view::ViewArgs;
 

@@ -9,7 +9,7 @@ use rhogrid_core::numbers::{FocalPx, Length, SplatPx, Turns, Unit, Weight};
 use rhogrid_core::stats::Stats;
 use rhogrid_core::target::{Target, canvas_len, frame_hash};
 
-use super::args::{CullingChoice, PathChoice, QualityArgs, RepairChoice, ShadowChoice, ViewArgs};
+use super::args::{CullingChoice, QualityArgs, RepairChoice, ShadowChoice, ViewArgs};
 use crate::bake::Cube;
 use crate::picture::Picture;
 use crate::view::{Light, View};
@@ -112,11 +112,7 @@ pub fn float_light(quality: &QualityArgs) -> Light {
 pub fn core_quality(quality: &QualityArgs) -> Quality {
     Quality {
         splat: SplatPx::saturating_from_num(quality.splat),
-        distortion: match quality.path {
-            PathChoice::Auto => Quality::DISTORTION,
-            PathChoice::Exact => SplatPx::ZERO,
-            PathChoice::Affine => SplatPx::MAX,
-        },
+        distortion: quality.distortion(),
         repair: quality.repair == RepairChoice::On,
         culling: quality.culling == CullingChoice::On,
     }

@@ -192,6 +192,24 @@ fn an_eye_looks_as_the_angles_do() {
     }
 }
 
+/// The paths are the ends of the bound, and one pixel is what it is by
+/// default.
+#[test]
+fn distortion_chooses_between_the_paths() {
+    let folder = Folder::new();
+    let drawn = |knobs: &str| {
+        hash(
+            &folder,
+            &format!("render cube.obj -o a.png {SMALL} {knobs}"),
+        )
+    };
+    let [exact, affine, default] = ["--path exact", "--path affine", ""].map(drawn);
+    assert_eq!(drawn("--distortion 0"), exact);
+    assert_eq!(drawn("--distortion 4096"), affine);
+    assert_eq!(drawn("--distortion 1"), default);
+    assert_ne!(exact, affine);
+}
+
 /// No eye is special: on the surface, at the centre, far off, along y.
 #[test]
 fn extreme_views_are_drawn() {
@@ -212,6 +230,7 @@ fn extreme_views_are_drawn() {
         "--fov 179.5",
         "--splat 0",
         "--splat 4096",
+        "--distortion 4096",
         "--light 0,-1,0",
         "--light 1e-200,0,0 --light 1,0,0",
         "--size 1x1",
@@ -240,7 +259,7 @@ fn verbose_text_says_more() {
         "part     columns",
         "sides",
         "facing",
-        "one material",
+        "few pixels",
         "stops from",
     ];
     let work = [

@@ -2,6 +2,7 @@
 
 use clap::{Args, ValueEnum};
 use rhogrid_core::draw::Quality;
+use rhogrid_core::numbers::SplatPx;
 
 use super::super::Failure;
 use super::Triple;
@@ -20,7 +21,7 @@ pub enum ShadowChoice {
 /// How cells reach the screen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum PathChoice {
-    /// Additions where they err by a quarter of a pixel at most
+    /// Additions where they err by no more than --distortion
     Auto,
     /// A reciprocal and a covering splat for each
     Exact,
@@ -68,6 +69,10 @@ pub struct QualityArgs {
     /// How cells are projected
     #[arg(long, value_enum, default_value = "auto")]
     pub path: PathChoice,
+    /// How far additions may be off, pixels, in the worst corner of the worst
+    /// view; with --path auto [default: 1]
+    #[arg(long, value_name = "PX", allow_negative_numbers = true)]
+    pub distortion: Option<f64>,
     /// What becomes of pixels that points have missed
     #[arg(long, value_enum, default_value = "on")]
     pub repair: RepairChoice,
@@ -83,7 +88,8 @@ impl QualityArgs {
     /// Checks what clap cannot.
     ///
     /// # Errors
-    /// When the light has no direction or the splat size is out of range.
+    /// When the light has no direction, a size is out of range or a bound has
+    /// no use.
     pub fn check(&self) -> Result<(), Failure> {
         if self.light.0.try_normalize().is_none() {
             return Err(Failure::Usage(
@@ -93,6 +99,24 @@ impl QualityArgs {
         if !(0.0..=4096.0).contains(&self.splat) {
             return Err(Failure::Usage("--splat must be 0 to 4096 pixels".into()));
         }
-        Ok(())
+        match self.distortion {
+            Some(_) if self.path != PathChoice::Auto => Err(Failure::Usage(
+                "--distortion bounds --path auto: leave one of the two out".into(),
+            )),
+            Some(bound) if !(0.0..=4096.0).contains(&bound) => Err(Failure::Usage(
+                "--distortion must be 0 to 4096 pixels".into(),
+            )),
+            _ => Ok(()),
+        }
+    }
+
+    /// How far additions may be off.
+    pub fn distortion(&self) -> SplatPx {
+        match (self.path, self.distortion) {
+            (PathChoice::Auto, None) => Quality::DISTORTION,
+            (PathChoice::Auto, Some(bound)) => SplatPx::saturating_from_num(bound),
+            (PathChoice::Exact, _) => SplatPx::ZERO,
+            (PathChoice::Affine, _) => SplatPx::MAX,
+        }
     }
 }
