@@ -144,6 +144,44 @@ impl<'a> Canvas<'a> {
         self.words.get_mut(start..start + columns)
     }
 
+    /// Whether a pixel on the canvas shows more than a word.
+    #[inline(always)]
+    pub fn exceeds_at(&self, column: i32, row: i32, word: u32) -> bool {
+        let own = self.words.get(self.index(column, row));
+        own.is_some_and(|&own| own > word)
+    }
+
+    /// Whether all pixels of a rectangle, first to last column and row, show
+    /// more than a word, as far as they count. The corners are asked first.
+    #[inline(never)]
+    pub fn exceeds(&self, columns: [i32; 2], rows: [i32; 2], word: u32) -> bool {
+        let within = |[first, last]: [i32; 2], low: u16, high: u16, around: i32| {
+            let (low, high) = (i32::from(low) - around, i32::from(high) - 1 + around);
+            [first.max(low), last.min(high)]
+        };
+        let strip = &self.strip;
+        let [left, right] = within(columns, strip.left, strip.right, AROUND[0]);
+        let [top, bottom] = within(rows, strip.top, strip.bottom, AROUND[1]);
+        let corners = [(left, top), (right, top), (left, bottom), (right, bottom)];
+        let mut corners = corners.into_iter();
+        if !corners.all(|(column, row)| self.exceeds_at(column, row, word)) {
+            return false;
+        }
+        let length = (right - left + 1).max(0) as usize;
+        (top..=bottom).all(|row| {
+            let start = self.index(left, row);
+            let row = self.words.get(start..start + length);
+            row.is_some_and(|row| row.iter().all(|&own| own > word))
+        })
+    }
+
+    /// Where a pixel of the picture is, as far as it is on the canvas.
+    #[inline(always)]
+    fn index(&self, column: i32, row: i32) -> usize {
+        let row = row - i32::from(self.strip.top) + GUARD as i32;
+        (row * PITCH as i32 + column - i32::from(self.strip.left)) as usize
+    }
+
     /// The neighbourhoods of pixels of a row of the strip: five rows, from the
     /// second above the first one's left neighbour to the second below the
     /// last one's right neighbour.

@@ -73,6 +73,8 @@ pub struct Plan {
     pub(crate) faces: bool,
     /// Whether samples that face away are drawn like any other.
     pub(crate) shows_all: bool,
+    /// Whether subtrees are skipped behind what is drawn.
+    pub(crate) hides: bool,
     /// Whether cells are tested against the picture's sides: not where it
     /// holds the cube. Strips of it have sides of their own.
     pub(crate) culls: bool,
@@ -134,6 +136,7 @@ impl Plan {
             repair: quality.repair.then(|| lens.gap(projection, quality)),
             faces: quality.culling && !grid.two_sided(),
             shows_all: !quality.culling,
+            hides: quality.culling,
             part,
             tabulates: part.pixels() >= FEW_PIXELS * materials,
             culls: !projection.holds_cube(picture),

@@ -10,6 +10,8 @@ pub struct Stats {
     pub nodes_back_facing: u32,
     /// Nodes skipped because they lie outside the picture or behind the eye.
     pub nodes_outside: u32,
+    /// Nodes skipped with their subtrees because what is drawn hides them.
+    pub nodes_hidden: u32,
     /// Cones tested for facing away.
     pub facing_tests: u32,
     /// Cells tested against the sides of a strip.

@@ -7,9 +7,11 @@
 
 mod affine;
 mod blocks;
+mod children;
 mod clip;
 mod facing;
 mod footprint;
+mod hidden;
 mod leaves;
 mod mask;
 mod normals;

@@ -57,6 +57,10 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
                 output.stats.nodes_outside += 1;
                 return;
             }
+            if self.is_hidden(&place, &affine, output.canvas) {
+                output.stats.nodes_hidden += 1;
+                return;
+            }
             let subtree = Subtree {
                 cell: &child,
                 record: &record,

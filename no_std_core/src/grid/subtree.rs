@@ -33,7 +33,12 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
         {
             return false;
         }
-        if cell.inside || self.is_near_strip(&place, output) {
+        if !cell.inside && !self.is_near_strip(&place, output) {
+            return true;
+        }
+        if self.is_hidden(&place, &affine, output.canvas) {
+            output.stats.nodes_hidden += 1;
+        } else {
             let subtree = Subtree {
                 cell,
                 record,

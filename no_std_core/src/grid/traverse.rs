@@ -5,16 +5,16 @@
 //! (multi-level stop, culling). Changes here: the cell above decides for its
 //! children, by its distance alone; what is inside the picture is not tested
 //! again below; the last one or two levels are walked in screen space
-//! ([`super::packed`]) where that is exact enough.
+//! ([`super::packed`]) where that is exact enough; above them what is nearest
+//! to the eye comes first, and what it hides is [not visited](super::hidden).
 
 use super::blocks::Queue;
 use super::clip::{Clip, Side};
 use super::facing::EyeSpace;
 use super::footprint::{Place, is_beside, near_limit};
-use super::mask;
 use super::normals::Normals;
 use super::packed::Block;
-use super::record::{Record, link_of, record_of};
+use super::record::{Record, record_of};
 use super::tables::{Point, Tables};
 use crate::asset::Grid;
 use crate::asset::coded::Coding;
@@ -204,7 +204,7 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
             stops(3) && shares(2) && self.siblings::<RHO, 2>(cell, record, normals, output)
         };
         if !is_drawn {
-            self.for_each_child::<RHO>(cell, record, |child, record, attribute| {
+            self.for_each_child_nearest_first::<RHO>(cell, record, |child, record, attribute| {
                 self.node::<RHO>(&child, &record, attribute, output);
             });
         }
@@ -221,54 +221,6 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
             return Side::Outside;
         }
         self.clip.side(cell.depth, cell.centre)
-    }
-
-    /// Visits the children of a cell, all of which are intermediate, with
-    /// their records and attributes: in file order, first those that are drawn
-    /// at their depth, then the others.
-    #[inline(always)]
-    pub(super) fn for_each_child<const RHO: u8>(
-        &self,
-        cell: &Cell,
-        record: &Record<RHO>,
-        mut visit: impl FnMut(Cell, Record<RHO>, u16),
-    ) {
-        let table = self.tables.below(cell.depth);
-        let below = usize::from(cell.depth) + 1;
-        let levels = self.grid.levels();
-        let (Some(level), Some(next)) = (levels.get(below), levels.get(below + 1)) else {
-            return;
-        };
-        let coding = self.coding::<RHO>(cell.depth + 2);
-        let mut first_child = link_of(next, coding, cell.index);
-        let mut children = cell.first_child..;
-        for mask in mask::in_file_order(record) {
-            for (word, offset) in mask.words().zip((0..).step_by(mask::cells(RHO))) {
-                for (bit, index) in mask::bits(word).zip(children.by_ref()) {
-                    let record = record_of::<RHO>(next, coding, index);
-                    let (Some(&attribute), Some(record)) = (level.attributes.get(index), record)
-                    else {
-                        return;
-                    };
-                    let at = offset + bit;
-                    let (Some(&displacement), Some(&step)) =
-                        (table.displacements.get(at), table.eye_displacements.get(at))
-                    else {
-                        return;
-                    };
-                    let child = Cell {
-                        depth: cell.depth + 1,
-                        index,
-                        first_child,
-                        centre: cell.centre.plus(displacement),
-                        view: [0, 1, 2].map(|axis| cell.view[axis] + step[axis]),
-                        inside: cell.inside,
-                    };
-                    first_child += record.children.count();
-                    visit(child, record, attribute);
-                }
-            }
-        }
     }
 
     /// How the level of a depth is coded, if it is a tri-grid's and is.

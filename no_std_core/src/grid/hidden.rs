@@ -1,0 +1,50 @@
+//! What lies behind what is drawn.
+//!
+//! A subtree whose every sample is deeper than each pixel that it may touch
+//! changes nothing: it is left out, and the canvas is the same to the bit. Cells
+//! above are visited [nearest first](Frame::for_each_child_nearest_first), so
+//! that what hides is there before what is hidden.
+
+use super::affine::Affine;
+use super::footprint::Place;
+use super::packed::Brush;
+use super::traverse::Frame;
+use crate::canvas::Canvas;
+use crate::numbers::SCREEN_BITS;
+
+/// What rounding moves a packed place by, at most, Q20.12 pixels: see
+/// [`super::packed::Subcells`].
+const ROUNDING: i32 = 9 << (SCREEN_BITS - 5);
+
+impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
+    /// Whether nothing of a subtree that lies at a place would show.
+    #[inline(always)]
+    pub(super) fn is_hidden(&self, place: &Place, affine: &Affine, canvas: &Canvas<'_>) -> bool {
+        if !self.plan.hides {
+            return false;
+        }
+        let nearest = (i32::from(place.depth) + affine.reach.depth) as u32;
+        let word = nearest << 16 | 0xffff;
+        canvas.exceeds_at(place.x >> SCREEN_BITS, place.y >> SCREEN_BITS, word)
+            && is_behind(place, affine, canvas, word)
+    }
+}
+
+/// Whether all pixels that a subtree may touch show more than a word.
+#[inline(never)]
+fn is_behind(place: &Place, affine: &Affine, canvas: &Canvas<'_>, word: u32) -> bool {
+    let pixels = |at: i32, reach: i32, is_two: bool| {
+        // Half a pixel back and one ahead: see [`Brush`].
+        let at = at - if is_two { 1 << (SCREEN_BITS - 1) } else { 0 };
+        let reach = reach + ROUNDING;
+        let (first, last) = (at - reach, at + reach);
+        [
+            first >> SCREEN_BITS,
+            (last >> SCREEN_BITS) + i32::from(is_two),
+        ]
+    };
+    let reach = &affine.reach;
+    let columns = pixels(place.x, reach.x, affine.brush != Brush::Point);
+    let rows = pixels(place.y, reach.y, affine.brush == Brush::Square);
+    canvas.exceeds(columns, rows, word)
+}
