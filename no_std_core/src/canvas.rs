@@ -26,8 +26,8 @@ pub(crate) const STRIP_COLUMNS: u16 = 240;
 pub(crate) const AROUND: [i32; 2] = [1, 2];
 /// How far from the strip the centre of a window may lie, columns and rows.
 pub(crate) const REACH: [i32; 2] = [8, 9];
-/// Words of a window: 16 rows, and one more into which squares reach.
-pub(crate) const WINDOW: usize = 17 * PITCH;
+/// Words of a window: 16 rows, and what squares at any of their words reach.
+pub(crate) const WINDOW: usize = 17 * PITCH + 1;
 /// The window's pixel that its centre falls on, both ways.
 pub(crate) const WINDOW_CENTRE: i32 = 8;
 

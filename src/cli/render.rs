@@ -66,6 +66,7 @@ struct Report {
     nodes_visited: u32,
     nodes_back_facing: u32,
     nodes_outside: u32,
+    nodes_hidden: u32,
     facing_tests: u32,
     side_tests: u32,
     samples_drawn: u32,
@@ -301,6 +302,7 @@ impl Report {
             nodes_visited: frame.stats.nodes_visited,
             nodes_back_facing: frame.stats.nodes_back_facing,
             nodes_outside: frame.stats.nodes_outside,
+            nodes_hidden: frame.stats.nodes_hidden,
             facing_tests: frame.stats.facing_tests,
             side_tests: frame.stats.side_tests,
             samples_drawn: frame.stats.samples_drawn,
@@ -329,11 +331,12 @@ fn print(args: &RenderArgs, report: &Report) -> Result<(), Failure> {
     ))?;
     if args.verbose {
         super::say(format_args!(
-            "  work: {} nodes, {} back-facing, {} outside; {} facing tests, {} side tests; \
+            "  work: {} nodes, {} back-facing, {} outside, {} hidden; {} facing tests, {} side tests; \
              {} samples one by one; median of {} frames",
             report.nodes_visited,
             report.nodes_back_facing,
             report.nodes_outside,
+            report.nodes_hidden,
             report.facing_tests,
             report.side_tests,
             report.splats_drawn,

@@ -259,6 +259,7 @@ fn verbose_text_says_more() {
         "part     columns",
         "sides",
         "facing",
+        "hidden",
         "few pixels",
         "stops from",
     ];

@@ -7,6 +7,7 @@ use std::vec::Vec;
 
 #[cfg(all(feature = "rho-3", feature = "mask-dictionary"))]
 mod coded;
+mod hidden;
 mod twin;
 
 /// A picture.
@@ -424,6 +425,7 @@ fn what_the_plan_leaves_out_is_not_done() {
         assert!(plan.faces || tests[1] == 0, "{case}");
         assert!(plan.culls || stats.nodes_outside == 0, "{case}");
         assert!(plan.faces || stats.nodes_back_facing == 0, "{case}");
+        assert!(plan.hides || stats.nodes_hidden == 0, "{case}");
         without_sides += u32::from(!plan.culls && stats.nodes_visited > 1);
         without_faces += u32::from(!plan.faces && stats.nodes_visited > 1);
     }

@@ -11,6 +11,7 @@ use super::packed::{Brush, Step, Subcells};
 use super::tables::Point;
 use super::traverse::{Cell, Frame};
 use crate::asset::Shell;
+use crate::asset::node::APERTURE_ALL;
 use crate::numbers::SCREEN_BITS;
 use crate::reciprocal::Reciprocal;
 
@@ -30,6 +31,10 @@ const REACH_TWO: i32 = (6 << SCREEN_BITS) + (3 << SCREEN_BITS) / 16;
 /// How many cells deeper samples that face away are drawn: as many as make a
 /// [hole](crate::resolve) of what shows of them between nearer ones.
 const FAR_SIDE_CELLS: u32 = 2;
+
+/// Least aperture, of 60 degrees, of blocks of which single samples are tested
+/// for facing away: narrower ones are mostly skipped or seen as a whole.
+const BOTH_WAYS: u8 = 9;
 
 /// What a subtree's depths may be off by rounding, at most one for each step,
 /// row and word.
@@ -110,6 +115,9 @@ pub(super) struct Affine {
     /// How much deeper than they are samples that face away are drawn; not at
     /// all where every surface is a sheet.
     pub far_side: u32,
+    /// Least aperture of blocks of which single samples are tested for facing
+    /// away.
+    pub both_ways: u8,
 }
 
 impl Affine {
@@ -126,6 +134,7 @@ impl Affine {
                 depth: 0,
             },
             far_side: 0,
+            both_ways: u8::MAX,
         }
     }
 }
@@ -155,6 +164,9 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
         if self.plan.faces {
             affine.far_side = FAR_SIDE_CELLS * steps.across();
             affine.reach.depth += affine.far_side as i32;
+            affine.both_ways = BOTH_WAYS;
+        } else if !self.plan.shows_all {
+            affine.both_ways = APERTURE_ALL;
         }
         affine.leaves.fill::<RHO>(&steps.0);
         if SPAN > 1 {

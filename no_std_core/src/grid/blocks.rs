@@ -8,8 +8,9 @@ use core::slice;
 
 use super::mask::{self, SLOTS};
 use super::normals::Normals;
-use super::packed::{Block, Subcells};
+use super::packed::Subcells;
 use super::record::{Reader, Record, Stored};
+use super::samples::Block;
 use super::subtree::Subtree;
 use super::traverse::Frame;
 use crate::asset::Level;

@@ -139,15 +139,18 @@ pub(super) fn in_file_order<const RHO: u8>(record: &Record<RHO>) -> [Mask<RHO>; 
 /// The walk over set bits, lowest first.
 pub(super) struct Walk {
     de_bruijn: u32,
+    /// The bits of a slot.
+    slot: u32,
 }
 
 impl Walk {
-    /// Of a constant that the compiler does not know: known ones are made
-    /// anew for each bit.
+    /// Of constants that the compiler does not know: known ones are made anew
+    /// for each bit.
     #[inline(always)]
     pub fn new() -> Self {
         Self {
             de_bruijn: black_box(DE_BRUIJN),
+            slot: black_box(31),
         }
     }
 
@@ -156,7 +159,7 @@ impl Walk {
     pub fn lowest(&self, word: &mut u32) -> usize {
         let lowest = *word & word.wrapping_neg();
         *word ^= lowest;
-        (lowest.wrapping_mul(self.de_bruijn) >> 27) as usize
+        (lowest.wrapping_mul(self.de_bruijn) >> 27 & self.slot) as usize
     }
 }
 
@@ -164,6 +167,7 @@ impl Walk {
 pub(super) fn slots(mut word: u32) -> impl Iterator<Item = usize> {
     let walk = Walk {
         de_bruijn: DE_BRUIJN,
+        slot: 31,
     };
     core::iter::from_fn(move || (word != 0).then(|| walk.lowest(&mut word)))
 }

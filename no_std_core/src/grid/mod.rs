@@ -17,6 +17,7 @@ mod mask;
 mod normals;
 mod packed;
 mod record;
+mod samples;
 mod siblings;
 mod subtree;
 mod tables;

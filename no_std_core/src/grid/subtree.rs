@@ -5,8 +5,9 @@ use super::blocks::block;
 use super::facing::Facing;
 use super::footprint::Place;
 use super::normals::Normals;
-use super::packed::{Brush, draw_blocks};
+use super::packed::Brush;
 use super::record::Record;
+use super::samples::draw_blocks;
 use super::traverse::{Cell, Frame, Output};
 use crate::numbers::SCREEN_BITS;
 use crate::reciprocal::reciprocal;
@@ -83,7 +84,7 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
             Brush::Wide => draw_blocks::<RHO, 2, 1>,
             Brush::Square => draw_blocks::<RHO, 2, 2>,
         };
-        output.stats.samples_drawn += draw(blocks, level, affine, subtree.normals, window);
+        output.stats.samples_drawn += draw(window, blocks, affine, level, subtree.normals);
     }
 }
 

@@ -69,6 +69,11 @@ impl Display for Plan {
             (false, false) => "two-sided, no cone is tested",
         };
         writeln!(f, "facing   {facing}")?;
+        let hidden = match self.hides {
+            true => "what lies behind what is drawn is skipped",
+            false => "culling is off, nothing is asked for",
+        };
+        writeln!(f, "hidden   {hidden}")?;
         let materials = self.materials;
         let colours = match (self.tabulates, materials) {
             (false, _) => "few pixels, each is shaded by itself",

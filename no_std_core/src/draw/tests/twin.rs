@@ -23,7 +23,7 @@ use crate::testing::{Exact, Model, dot};
 const PACKED_ROUNDING: f64 = (1.0 + 2.0 * 4.0) / 32.0;
 
 /// Least aperture of blocks whose samples are tested for facing away.
-const BOTH_WAYS: u8 = 13;
+const BOTH_WAYS: u8 = 9;
 
 /// A value and how far it may be off.
 #[derive(Clone, Copy, Debug)]
@@ -216,8 +216,14 @@ impl<'a> View<'a> {
                 let block = depth
                     .checked_sub(1)
                     .map(|above| &model.levels[above][cell.parent]);
-                if block.is_some_and(|block| block.flags.aperture >= BOTH_WAYS) {
-                    core = self.far_side(core, cell.attribute, centre, depth);
+                if let Some(block) = block
+                    && block.flags.aperture >= BOTH_WAYS
+                    && self.may_face_away(cell.attribute, centre, depth)
+                {
+                    match block.flags.is_sheet() {
+                        true => core = self.far_side(core, centre, depth),
+                        false => sure = false,
+                    }
                 }
             }
             let drop = self.drop(origin[2], &edges, units);
@@ -352,20 +358,26 @@ impl<'a> View<'a> {
         }
     }
 
-    /// The depth of a sample that lies two cells deeper if it faces away and is
-    /// packed: at both, unless it surely faces the eye. Its view is that of a
-    /// cell two levels up, its normal 3.4 degrees off.
-    fn far_side(&self, core: Near, attribute: u16, centre: [f64; 3], depth: usize) -> Near {
+    /// Whether a packed sample does not surely face the eye. Its view is that of
+    /// a cell two levels up, its normal 3.4 degrees off.
+    fn may_face_away(&self, attribute: u16, centre: [f64; 3], depth: usize) -> bool {
         let view = [0, 1, 2].map(|i| centre[i] - self.exact.eye[i]);
-        let distance = dot(view, view).sqrt();
+        let along = dot(decode(attribute).map(|c| f64::from(c) / 16384.0), view);
+        along / dot(view, view).sqrt() >= -self.facing_doubt(centre, depth)
+    }
+
+    fn facing_doubt(&self, centre: [f64; 3], depth: usize) -> f64 {
+        let view = [0, 1, 2].map(|i| centre[i] - self.exact.eye[i]);
         let above = self.model.cells_per_axis(depth.saturating_sub(2)) as f64;
-        let doubt = 0.07 + 2.0 / above / distance;
-        let along = dot(decode(attribute).map(|c| f64::from(c) / 16384.0), view) / distance;
+        0.07 + 2.0 / above / dot(view, view).sqrt()
+    }
+
+    /// The depth of a sheet's packed sample that may face away and lies two
+    /// cells deeper then: at both.
+    fn far_side(&self, core: Near, centre: [f64; 3], depth: usize) -> Near {
+        let doubt = self.facing_doubt(centre, depth);
         let w = self.exact.forms(centre)[2];
         let deeper = self.depth_scaled(w) * 4.0 * self.reach(depth) / w;
-        if along < -doubt {
-            return core;
-        }
         let error = core.error + deeper * (doubt + 2.0 * doubt * doubt) + 8.0;
         Near {
             value: core.value - deeper / 2.0,
