@@ -106,11 +106,12 @@ impl<const CELLS: usize, const LEVELS: usize> Tables<CELLS, LEVELS> {
         let rho = i64::from(rho);
         self.centre = point(projection, |form| form.centre);
         let mut cells_per_axis = 1i64;
-        self.root.set_extents(projection, 1, eye_unit, 0);
+        self.root.set_extents(&edges(projection, 1), 1, eye_unit, 0);
         for (level, depth) in self.levels.iter_mut().zip(1..=i32::from(depth)) {
             cells_per_axis *= rho;
-            level.set_extents(projection, cells_per_axis, eye_unit, depth);
-            level.set_displacements(rho, cells_per_axis, projection, eye_unit);
+            let edges = edges(projection, cells_per_axis);
+            level.set_extents(&edges, cells_per_axis, eye_unit, depth);
+            level.set_displacements(rho, &edges, cells_per_axis, eye_unit);
         }
     }
 
@@ -149,19 +150,21 @@ impl<const CELLS: usize> LevelTable<CELLS> {
         }
     }
 
-    /// Extents of cells of a depth, of which `cells_per_axis` span the cube.
+    /// Extents of cells of a depth, of which `cells_per_axis` span the cube,
+    /// with their half edges.
     fn set_extents(
         &mut self,
-        projection: &Projection,
+        [x, y, w]: &HalfEdges,
         cells_per_axis: i64,
         eye_unit: i32,
         depth: i32,
     ) {
-        let cells_per_axis = cells_per_axis.max(1);
-        for (axis, edge) in self.half_edges.iter_mut().enumerate() {
-            *edge = point(projection, |form| {
-                form.axes.get(axis).copied().unwrap_or(0) / cells_per_axis
-            });
+        for (edge, ((&x, &y), &w)) in self.half_edges.iter_mut().zip(x.iter().zip(y).zip(w)) {
+            *edge = Point {
+                x: round_guard(x),
+                y: round_guard(y),
+                w: round_guard(w),
+            };
         }
         // One unit more for each rounded edge.
         self.half_w = self.half_edges.iter().map(|edge| edge.w.abs() + 1).sum();
@@ -173,35 +176,46 @@ impl<const CELLS: usize> LevelTable<CELLS> {
     fn set_displacements(
         &mut self,
         rho: i64,
+        edges: &HalfEdges,
         cells_per_axis: i64,
-        projection: &Projection,
         eye_unit: i32,
     ) {
         let cells_per_axis = cells_per_axis.max(1);
-        let edges = projection
-            .forms
-            .map(|form| form.axes.map(|axis| axis / cells_per_axis));
-        let step = i64::from(eye_unit);
+        // By the subcell's number along an axis.
+        let mut steps = [0; MAX_RHO];
+        for (step, number) in steps.iter_mut().zip(0..rho) {
+            let at = 2 * number + 1 - rho;
+            *step = round_ratio(at * i64::from(eye_unit), cells_per_axis);
+        }
         let entries = self
             .displacements
             .iter_mut()
             .zip(&mut self.eye_displacements);
         let mut place = [1 - rho; 3];
         for (displacement, eye_displacement) in entries {
-            let along = |row: usize| {
-                let edges = edges.get(row).copied().unwrap_or([0; 3]);
+            let [x, y, w] = edges.map(|edges| {
                 let sum: i64 = place.iter().zip(edges).map(|(at, edge)| at * edge).sum();
                 round_guard(sum)
-            };
-            *displacement = Point {
-                x: along(0),
-                y: along(1),
-                w: along(2),
-            };
-            *eye_displacement = place.map(|at| round_ratio(at * step, cells_per_axis));
+            });
+            *displacement = Point { x, y, w };
+            *eye_displacement = place.map(|at| steps[(at + rho) as usize / 2 % MAX_RHO]);
             next_place(&mut place, rho);
         }
     }
+}
+
+/// Largest number of subcells along an axis.
+const MAX_RHO: usize = 5;
+
+/// What X, Y and w change along half of each edge, block units with guard bits.
+type HalfEdges = [[i64; 3]; 3];
+
+/// The half edges of cells of which so many span the cube.
+fn edges(projection: &Projection, cells_per_axis: i64) -> HalfEdges {
+    let count = cells_per_axis.max(1);
+    projection
+        .forms
+        .map(|form| form.axes.map(|axis| axis / count))
 }
 
 /// Advances (x, y, z), x fastest, in steps of two from 1 - rho to rho - 1.
