@@ -37,7 +37,7 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
         queue: &'q mut Queue<'_, 'a>,
         stats: &mut Stats,
     ) -> &'q [Block<'a>] {
-        if let Some(coding) = self.coding::<RHO>(subtree.cell.depth + 2) {
+        if let Some(coding) = self.coding::<RHO>(subtree.depth + 2) {
             return self.coded_blocks::<RHO, FACES>(subtree, level, coding, start, queue, stats);
         }
         match RHO {
@@ -90,7 +90,7 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
         else {
             return &[];
         };
-        let link = reader.link(level, subtree.cell.index);
+        let link = reader.link(level, subtree.spot.index);
         let room = queue.blocks.len();
         let mut kept = Kept {
             free: queue.blocks.iter_mut(),
@@ -123,11 +123,16 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
     where
         'a: 'c,
     {
-        let Subtree { cell, record, .. } = *subtree;
+        let Subtree {
+            depth,
+            spot,
+            record,
+            ..
+        } = *subtree;
         let count = place_children(record, start, &subtree.affine.blocks, places);
-        let first = cell.first_child;
+        let first = spot.first_child;
         let cells = first..first.checked_add(count)?;
-        let own = self.grid.levels().get(usize::from(cell.depth) + 1)?;
+        let own = self.grid.levels().get(usize::from(depth) + 1)?;
         let [nodes, drawn] = reader.records(level);
         Some(Children {
             reader,
@@ -238,9 +243,9 @@ pub(super) fn block<'q, 'a, const RHO: u8>(
     start: u32,
     queue: &'q mut Queue<'_, 'a>,
 ) -> &'q [Block<'a>] {
-    let Subtree { cell, record, .. } = subtree;
+    let Subtree { spot, record, .. } = subtree;
     let count = record.drawn.count();
-    let attributes = level.attributes.get(cell.first_child..);
+    let attributes = level.attributes.get(spot.first_child..);
     let (Some((own, _)), Some(attributes)) = (
         queue.blocks.split_first_chunk_mut::<1>(),
         attributes.and_then(|attributes| attributes.get(..count)),
@@ -251,7 +256,7 @@ pub(super) fn block<'q, 'a, const RHO: u8>(
         place: start,
         record: match RHO {
             3 => record.drawn.first_word() | u32::from(record.flags.bits()) << 27,
-            _ => cell.index as u32,
+            _ => spot.index as u32,
         },
         attributes,
     }];

@@ -4,6 +4,7 @@
 //! around its parent, so that tables are filled once for all of them.
 
 use super::affine::Affine;
+use super::children::Spot;
 use super::facing::Facing;
 use super::footprint::Place;
 use super::normals::{Around, Normals};
@@ -34,9 +35,12 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
         let radius = |depth| self.tables.extents(depth).eye_radius;
         let around = Around::new(cell.view, radius(cell.depth), radius(cell.depth + 1));
         let (stop, above) = (self.plan.stop(bottom), self.plan.stop(bottom - 1));
-        self.for_each_child::<RHO>(cell, record, |child, record, attribute| {
-            let normals = around.normals(child.view);
-            let w = child.centre.w;
+        self.for_each_child::<RHO>(cell, record, |spot, record| {
+            let Some((centre, view, attribute)) = self.child_at(cell, &spot) else {
+                return;
+            };
+            let normals = around.normals(view);
+            let w = centre.w;
             let facing = match self.plan.faces {
                 true => normals.facing(record.flags, attribute),
                 false => Facing::Toward,
@@ -47,13 +51,13 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
                 output.stats.nodes_back_facing += 1;
                 return;
             }
-            let place = Place::of(self.projection, child.centre, reciprocal(w as u32));
+            let place = Place::of(self.projection, centre, reciprocal(w as u32));
             let stops = w >= stop && (SPAN == 1 || w < above);
             if !stops || !affine.reach.fits_depth(&place) {
-                return self.node::<RHO>(&child, &record, attribute, output);
+                return self.alone::<RHO>(cell, &spot, &record, output);
             }
             output.stats.nodes_visited += 1;
-            if !child.inside && !self.is_near_strip(&place, output) {
+            if !cell.inside && !self.is_near_strip(&place, output) {
                 output.stats.nodes_outside += 1;
                 return;
             }
@@ -62,7 +66,8 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
                 return;
             }
             let subtree = Subtree {
-                cell: &child,
+                depth: cell.depth + 1,
+                spot,
                 record: &record,
                 normals: &normals,
                 facing,
@@ -71,5 +76,20 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
             self.subtree::<RHO, SPAN>(&subtree, &place, output);
         });
         true
+    }
+
+    /// Visits a child that cannot share the map: out of the way of those that
+    /// do.
+    #[inline(never)]
+    fn alone<const RHO: u8>(
+        &self,
+        cell: &Cell,
+        spot: &Spot,
+        record: &Record<RHO>,
+        output: &mut Output<'_, '_, 'a>,
+    ) {
+        if let Some((child, attribute)) = self.child(cell, spot) {
+            self.node::<RHO>(&child, record, attribute, output);
+        }
     }
 }

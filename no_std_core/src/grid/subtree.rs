@@ -2,6 +2,7 @@
 
 use super::affine::Affine;
 use super::blocks::block;
+use super::children::Spot;
 use super::facing::Facing;
 use super::footprint::Place;
 use super::normals::Normals;
@@ -41,7 +42,12 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
             output.stats.nodes_hidden += 1;
         } else {
             let subtree = Subtree {
-                cell,
+                depth: cell.depth,
+                spot: Spot {
+                    at: 0,
+                    index: cell.index,
+                    first_child: cell.first_child,
+                },
                 record,
                 normals,
                 facing: match self.plan.faces {
@@ -63,10 +69,10 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
         place: &Place,
         output: &mut Output<'_, '_, 'a>,
     ) {
-        let Subtree { cell, affine, .. } = subtree;
+        let affine = subtree.affine;
         let start = place.step().packed_in_window();
         let start = start.wrapping_add(affine.brush.offset());
-        let bottom = usize::from(cell.depth) + SPAN;
+        let bottom = usize::from(subtree.depth) + SPAN;
         let window = output
             .canvas
             .window(place.x >> SCREEN_BITS, place.y >> SCREEN_BITS);
@@ -90,7 +96,9 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
 
 /// What a subtree is drawn from.
 pub(super) struct Subtree<'a, const RHO: u8> {
-    pub cell: &'a Cell,
+    /// Its cell's.
+    pub depth: u8,
+    pub spot: Spot,
     pub record: &'a Record<RHO>,
     pub normals: &'a Normals,
     /// How all of it faces.

@@ -205,7 +205,7 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
         };
         if !is_drawn {
             self.for_each_child_nearest_first::<RHO>(cell, record, |child, record, attribute| {
-                self.node::<RHO>(&child, &record, attribute, output);
+                self.node::<RHO>(child, record, attribute, output);
             });
         }
     }
