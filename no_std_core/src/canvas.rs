@@ -26,6 +26,8 @@ pub(crate) const STRIP_COLUMNS: u16 = 240;
 pub(crate) const AROUND: [i32; 2] = [1, 2];
 /// How far from the strip the centre of a window may lie, columns and rows.
 pub(crate) const REACH: [i32; 2] = [8, 9];
+/// Columns on either side of a strip that samples near it reach.
+const SIDE: usize = REACH[0] as usize + 9;
 /// Words of a window: 16 rows, and what squares at any of their words reach.
 pub(crate) const WINDOW: usize = 17 * PITCH + 1;
 /// The window's pixel that its centre falls on, both ways.
@@ -65,6 +67,21 @@ pub(crate) fn clear(words: &mut [u32]) {
     }
 }
 
+/// Clears rows in which so many columns are a strip's, and what samples near
+/// them reach on either side.
+fn clear_columns(rows: &mut [u32], columns: usize) {
+    let beside = [columns + SIDE, PITCH - SIDE];
+    if beside[0] >= beside[1] {
+        return clear(rows);
+    }
+    for row in rows.as_chunks_mut::<PITCH>().0 {
+        let (own, rest) = row.split_at_mut(beside[0]);
+        clear(own);
+        // The left side of the next row.
+        clear(rest.split_at_mut(beside[1] - beside[0]).1);
+    }
+}
+
 /// A strip of the picture on the canvas.
 pub(crate) struct Canvas<'a> {
     words: &'a mut [u32],
@@ -99,7 +116,7 @@ impl<'a> Canvas<'a> {
     pub fn new(words: &'a mut [u32], strip: Rect) -> Self {
         let rows = strip.height() + 2 * GUARD + 1;
         let used = words.len().min(rows * PITCH);
-        clear(words.split_at_mut(used).0);
+        clear_columns(words.split_at_mut(used).0, strip.width());
         Self {
             words,
             strip,

@@ -47,22 +47,17 @@ pub(crate) fn resolve(
     let repair = repair.filter(|_| cfg!(feature = "repair"));
     let (columns, rows) = canvas.touched();
     let mut above = [0; 2];
-    for row in strip.top..strip.bottom {
-        let drawn = if rows.contains(&row) {
-            columns.clone()
-        } else {
-            strip.left..strip.left
-        };
-        for beside in [strip.left..drawn.start, drawn.end..strip.right] {
-            picture.blank(beside, row);
+    for beyond in [strip.top..rows.start, rows.end..strip.bottom] {
+        picture.blank(strip.left..strip.right, beyond);
+    }
+    for row in rows {
+        for beside in [strip.left..columns.start, columns.end..strip.right] {
+            picture.blank(beside, row..row + 1);
         }
-        if drawn.is_empty() {
-            continue;
-        }
-        let Some(words) = canvas.neighbourhoods(&drawn, row) else {
+        let Some(words) = canvas.neighbourhoods(&columns, row) else {
             return;
         };
-        if let Some(colours) = picture.colours(drawn.clone(), row) {
+        if let Some(colours) = picture.colours(columns.clone(), row) {
             match (repair, shader.table_of_one()) {
                 (None, _) => plain_row(words, shader, colours),
                 (Some(gap), None) => {
@@ -77,7 +72,7 @@ pub(crate) fn resolve(
                 }
             }
         }
-        if let Some(depths) = picture.depths(drawn, row) {
+        if let Some(depths) = picture.depths(columns.clone(), row) {
             depth_row(words, repair, depths);
         }
     }

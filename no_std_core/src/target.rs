@@ -200,13 +200,24 @@ impl Picture<'_> {
         self.depth.as_mut()?.get_mut(range)
     }
 
-    /// Zeroes colours, and depths if they are asked for, of a row.
-    pub(crate) fn blank(&mut self, columns: Range<u16>, row: u16) {
-        if let Some(colours) = self.colours(columns.clone(), row) {
-            blank(colours);
-        }
-        if let Some(depths) = self.depths(columns, row) {
-            blank(depths);
+    /// Zeroes colours, and depths if they are asked for, of rows.
+    pub(crate) fn blank(&mut self, columns: Range<u16>, rows: Range<u16>) {
+        let first = self.range(columns.clone(), rows.start);
+        let width = self.band.width();
+        let rows = rows.len();
+        let (length, count) = match first.len() == width {
+            // One row after the other.
+            true => (rows * width, rows.min(1)),
+            false => (first.len(), rows),
+        };
+        for start in (first.start..).step_by(width.max(1)).take(count) {
+            if let Some(colours) = self.colour.get_mut(start..start + length) {
+                blank(colours);
+            }
+            let depths = self.depth.as_mut();
+            if let Some(depths) = depths.and_then(|depths| depths.get_mut(start..start + length)) {
+                blank(depths);
+            }
         }
     }
 

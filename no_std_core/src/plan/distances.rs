@@ -73,10 +73,17 @@ pub(super) struct Distances {
 }
 
 impl Distances {
-    /// Those a level below. Each is rounded up.
+    /// Those a level below. Each is rounded up, by 2^-29 of it and one at most.
     pub fn below(self, rho: i64) -> Self {
-        // Below 2^63 - rho.
-        let next = |distance: i64| (distance + rho - 1) / rho;
+        // 1 / rho, Q32, rounded up: no division for each.
+        let factor = (1 << 32) / (rho as u64).max(1) + 1;
+        let next = |distance: i64| {
+            let distance = distance.unsigned_abs();
+            // 31 + 31 and 32 + 31 bits.
+            let high = (distance >> 32) * factor;
+            let low = ((distance & 0xffff_ffff) * factor) >> 32;
+            (high + low + 1) as i64
+        };
         Self {
             edge: next(self.edge),
             stop: next(self.stop),
