@@ -61,7 +61,8 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
                 output.stats.nodes_outside += 1;
                 return;
             }
-            if self.is_hidden(&place, &affine, output.canvas) {
+            // One block costs little more than to ask.
+            if SPAN > 1 && self.is_hidden(&place, &affine, output.canvas) {
                 output.stats.nodes_hidden += 1;
                 return;
             }
