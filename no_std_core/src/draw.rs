@@ -39,9 +39,9 @@ pub struct Quality {
     /// Whether pixels that points have missed are closed: see
     /// [`crate::target::Target`].
     pub repair: bool,
-    /// Whether what faces away is left out. Without it each surface is drawn
-    /// from both sides as it is, and costs what it would in full view: to
-    /// measure what a sample costs.
+    /// Whether what faces away or is hidden is left out. Without it each surface
+    /// is drawn from both sides as it is, and costs what it would in full view:
+    /// to measure what a sample costs.
     pub culling: bool,
 }
 

@@ -15,7 +15,7 @@
 //!   larger is nearer, zero is empty.
 //! * **Coverage**: a point owns the pixel that holds its centre; a splat also
 //!   those whose centres lie in [low, high) of its rectangle. Of two equal
-//!   depths the first drawn stays.
+//!   depths the larger attribute stays among points, else the first drawn.
 //! * **Faces** are counter-clockwise from their front; normals point outward
 //!   and surfaces are one-sided unless the asset says otherwise.
 //! * **Colours** are RGB565, native words, no gamma. **Angles** are turns.

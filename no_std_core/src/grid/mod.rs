@@ -3,7 +3,8 @@
 //! Source: Duguet and Drettakis 2003, 5.1 and 5.2. Changes here: centres are
 //! integers in block fixed point; every level's table is rounded from the
 //! exact basis (the paper divides the table above); nodes whose surfaces all
-//! face away are skipped with their subtrees.
+//! face away, or that are hidden by what is drawn, are skipped with their
+//! subtrees.
 
 mod affine;
 mod blocks;

@@ -38,7 +38,7 @@ pub enum RepairChoice {
     Off,
 }
 
-/// What becomes of what faces away.
+/// What becomes of what faces away or is hidden.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum CullingChoice {
     /// It is left out
@@ -76,7 +76,7 @@ pub struct QualityArgs {
     /// What becomes of pixels that points have missed
     #[arg(long, value_enum, default_value = "on")]
     pub repair: RepairChoice,
-    /// What becomes of what faces away
+    /// What becomes of what faces away or is hidden
     #[arg(long, value_enum, default_value = "on")]
     pub culling: CullingChoice,
     /// Shadows; for --reference alone, which traces rays
