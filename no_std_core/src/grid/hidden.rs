@@ -17,7 +17,8 @@ use crate::numbers::SCREEN_BITS;
 const ROUNDING: i32 = 9 << (SCREEN_BITS - 5);
 
 impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
-    /// Whether nothing of a subtree that lies at a place would show.
+    /// Whether nothing of a subtree that lies at a place would show. Its depths
+    /// fit their field there.
     #[inline(always)]
     pub(super) fn is_hidden(&self, place: &Place, affine: &Affine, canvas: &Canvas<'_>) -> bool {
         if !self.plan.hides {
