@@ -19,8 +19,9 @@ use distances::Lens;
 /// Deepest packed subtree.
 const PACKED_LEVELS: usize = 2;
 /// Cells up to this edge are drawn with a [brush](crate::grid), pixels Q16: a
-/// larger one is a splat of its own size.
-const BRUSH_PX: i64 = 2 << 16;
+/// larger one is a splat of its own size. At two pixels, squares of two leave
+/// slits where neighbours of a thin shell meet at corners.
+const BRUSH_PX: i64 = 15 << 13;
 /// Cells up to this edge are one pixel, pixels Q16.
 const POINT_PX: i64 = 18 << 12;
 /// Cells up to this edge are at most two pixels side by side, pixels Q16.

@@ -28,13 +28,13 @@ const REACH: i32 = (6 << SCREEN_BITS) + (5 << SCREEN_BITS) / 8;
 /// more ahead.
 const REACH_TWO: i32 = (6 << SCREEN_BITS) + (3 << SCREEN_BITS) / 16;
 
-/// How many cells deeper samples that face away are drawn: as many as make a
-/// [hole](crate::resolve) of what shows of them between nearer ones.
+/// How many cells deeper a sheet's samples are drawn that face away: as many as
+/// make a [hole](crate::resolve) of what shows of them between nearer ones.
 const FAR_SIDE_CELLS: u32 = 2;
 
-/// Least aperture, of 60 degrees, of blocks of which single samples are tested
+/// Least aperture, of 48 degrees, of blocks of which single samples are tested
 /// for facing away: narrower ones are mostly skipped or seen as a whole.
-const BOTH_WAYS: u8 = 9;
+const BOTH_WAYS: u8 = 7;
 
 /// What a subtree's depths may be off by rounding, at most one for each step,
 /// row and word.
@@ -112,8 +112,8 @@ pub(super) struct Affine {
     pub blocks: Subcells,
     pub brush: Brush,
     pub reach: Reach,
-    /// How much deeper than they are samples that face away are drawn; not at
-    /// all where every surface is a sheet.
+    /// How much deeper than they are a sheet's samples are drawn that face away;
+    /// not at all where every surface is a sheet.
     pub far_side: u32,
     /// Least aperture of blocks of which single samples are tested for facing
     /// away.

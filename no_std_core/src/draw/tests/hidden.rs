@@ -72,7 +72,7 @@ fn samples_that_face_away_are_not_drawn() {
         let away = encode(camera.forward.map(|c| c.to_bits() >> 4));
         for cell in model.levels.iter_mut().flatten() {
             cell.attribute = away;
-            cell.flags.aperture = rng.u8(9..=15);
+            cell.flags.aperture = rng.u8(7..=15);
             cell.flags.two_sided = false;
         }
         let on = packed(8.0);

@@ -23,7 +23,7 @@ use crate::testing::{Exact, Model, dot};
 const PACKED_ROUNDING: f64 = (1.0 + 2.0 * 4.0) / 32.0;
 
 /// Least aperture of blocks whose samples are tested for facing away.
-const BOTH_WAYS: u8 = 9;
+const BOTH_WAYS: u8 = 7;
 
 /// A value and how far it may be off.
 #[derive(Clone, Copy, Debug)]
