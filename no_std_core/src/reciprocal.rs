@@ -69,10 +69,10 @@ impl Reciprocal {
     /// `value / operand * 2^scale`, rounded down and saturated at +-2^30.
     ///
     /// 32 x 32 -> 64 bits: |value| <= 2^31 and the mantissa below 2^31 leave
-    /// one bit.
+    /// one bit. As both are signed, that is one instruction.
     #[inline(always)]
     pub fn times(self, value: i32, scale: i32) -> i32 {
-        let product = i64::from(value) * i64::from(self.mantissa);
+        let product = i64::from(value) * i64::from(self.mantissa as i32);
         let shift = 62 - scale - self.shift;
         if let 32..=63 = shift {
             // The upper word is at most 2^30 in magnitude.

@@ -35,10 +35,11 @@ static TEST_SINE: [i32; 16] = {
     sines
 };
 
-/// A factor: mantissa 2^(shift - 32).
+/// A factor: mantissa 2^(shift - 32). The mantissa is signed for one
+/// multiplication of signed words.
 #[derive(Clone, Copy)]
 struct Scale {
-    mantissa: u32,
+    mantissa: i32,
     shift: i32,
 }
 
@@ -51,12 +52,13 @@ impl Scale {
     }
 }
 
-/// Inverse roots, rounded down: entry i holds 2^33 / sqrt(i + 1).
-static INVERSE_ROOT: [u32; 64] = {
+/// Inverse roots, rounded down: entry i holds 2^33 / sqrt(i + 1), below 2^31
+/// from the first one on that is asked for.
+static INVERSE_ROOT: [i32; 64] = {
     let mut table = [0; 64];
     let mut index = 16;
     while index < 64 {
-        table[index] = ((1u128 << 66) / (index as u128 + 1)).isqrt() as u32;
+        table[index] = ((1u128 << 66) / (index as u128 + 1)).isqrt() as i32;
         index += 1;
     }
     table
@@ -168,10 +170,10 @@ impl Around {
         }
         let radius = share(radius);
         let radius = radius + ((radius * u) >> 13) + 1;
-        let mantissa = (u64::from(scale.mantissa) * ((1 << 14) - u) as u64) >> 14;
+        let mantissa = (i64::from(scale.mantissa) * i64::from((1 << 14) - u)) >> 14;
         Self {
             scale: Scale {
-                mantissa: mantissa as u32,
+                mantissa: mantissa as i32,
                 ..scale
             },
             doubt: DOUBT + radius * COARSE_ONE,
