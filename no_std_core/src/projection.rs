@@ -201,6 +201,21 @@ impl Projection {
         (self.depth.scaled(w) - self.depth.offset).clamp(1, 65535) as u16
     }
 
+    /// How depth follows from a mantissa where reciprocals have a shift: its
+    /// factor, how far the product's upper word goes to the right, and what is
+    /// taken off. `None` if that shift is none of a word.
+    pub fn depth_scale(&self, shift: i32) -> Option<(u32, i32, i32)> {
+        let DepthScale {
+            mantissa,
+            narrow_offset,
+            ..
+        } = self.depth;
+        match self.depth.shift - shift {
+            shift @ 32..=63 => Some((mantissa, shift - 32, narrow_offset)),
+            _ => None,
+        }
+    }
+
     /// Depth without its offset: proportional to 1 / w.
     pub fn depth_scaled(&self, w: Reciprocal) -> i64 {
         self.depth.scaled(w)

@@ -52,6 +52,15 @@ pub fn reciprocal(operand: u32) -> Reciprocal {
             shift += step;
         }
     }
+    Reciprocal {
+        mantissa: mantissa(normalized),
+        shift,
+    }
+}
+
+/// The reciprocal's mantissa of an operand whose highest bit is bit 31.
+#[inline(always)]
+pub(crate) fn mantissa(normalized: u32) -> u32 {
     let index = (normalized >> 23) as usize % STEPS;
     let fraction = (normalized >> 7) & 0xffff;
     let (left, right) = match TABLE.get(index..index + 2) {
@@ -59,10 +68,7 @@ pub fn reciprocal(operand: u32) -> Reciprocal {
         _ => (0, 0),
     };
     let below = (u64::from(left.wrapping_sub(right)) * u64::from(fraction)) >> 16;
-    Reciprocal {
-        mantissa: left.wrapping_sub(below as u32),
-        shift,
-    }
+    left.wrapping_sub(below as u32)
 }
 
 impl Reciprocal {

@@ -99,8 +99,8 @@ impl Reach {
     /// Whether depths around a place's stay within their field, above zero.
     #[inline(always)]
     pub fn fits_depth(&self, place: &Place) -> bool {
-        let middle = i32::from(place.depth);
-        middle > self.depth && middle + self.depth <= 65535
+        let middle = place.depth;
+        middle > self.depth && middle <= 65535 - self.depth
     }
 }
 

@@ -19,7 +19,8 @@ pub(super) struct Place {
     /// Q20.12 pixels from the picture's top left corner.
     pub x: i32,
     pub y: i32,
-    pub depth: u16,
+    /// Of 16 bits, except as [`Octave::place`] says.
+    pub depth: i32,
 }
 
 impl Place {
@@ -31,7 +32,7 @@ impl Place {
         Self {
             x: inverse.times(point.x, scale) + middle_x.to_bits(),
             y: inverse.times(point.y, scale) + middle_y.to_bits(),
-            depth: projection.depth(inverse),
+            depth: i32::from(projection.depth(inverse)),
         }
     }
 
@@ -40,7 +41,7 @@ impl Place {
         Step {
             x: self.x,
             y: self.y,
-            depth: i32::from(self.depth),
+            depth: self.depth,
         }
     }
 }

@@ -24,7 +24,7 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
         if !self.plan.hides {
             return false;
         }
-        let nearest = (i32::from(place.depth) + affine.reach.depth) as u32;
+        let nearest = (place.depth + affine.reach.depth) as u32;
         let word = nearest << 16 | 0xffff;
         canvas.exceeds_at(place.x >> SCREEN_BITS, place.y >> SCREEN_BITS, word)
             && is_behind(place, affine, canvas, word)

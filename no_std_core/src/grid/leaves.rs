@@ -129,7 +129,7 @@ fn splat(place: Place, extent: &Extent, attribute: u16, output: &mut Output<'_, 
     let splat = Splat {
         x: place.x,
         y: place.y,
-        depth: place.depth,
+        depth: place.depth as u16,
         attribute,
     };
     draw(output.canvas, &splat, extent);

@@ -16,6 +16,7 @@ mod hidden;
 mod leaves;
 mod mask;
 mod normals;
+mod octave;
 mod packed;
 mod record;
 mod samples;

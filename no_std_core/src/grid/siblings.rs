@@ -8,8 +8,10 @@ use super::children::Spot;
 use super::facing::Facing;
 use super::footprint::Place;
 use super::normals::{Around, Normals};
+use super::octave::Octave;
 use super::record::Record;
 use super::subtree::Subtree;
+use super::tables::Point;
 use super::traverse::{Cell, Frame, Output};
 use crate::reciprocal::reciprocal;
 
@@ -34,6 +36,7 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
         }
         let radius = |depth| self.tables.extents(depth).eye_radius;
         let around = Around::new(cell.view, radius(cell.depth), radius(cell.depth + 1));
+        let octave = Octave::of(self.projection, inverse);
         let (stop, above) = (self.plan.stop(bottom), self.plan.stop(bottom - 1));
         self.for_each_child::<RHO>(cell, record, |spot, record| {
             let Some((centre, view, attribute)) = self.child_at(cell, &spot) else {
@@ -51,7 +54,10 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
                 output.stats.nodes_back_facing += 1;
                 return;
             }
-            let place = Place::of(self.projection, centre, reciprocal(w as u32));
+            let place = match octave.place(centre) {
+                Some(place) => place,
+                None => self.place_beyond(centre),
+            };
             let stops = w >= stop && (SPAN == 1 || w < above);
             if !stops || !affine.reach.fits_depth(&place) {
                 return self.alone::<RHO>(cell, &spot, &record, output);
@@ -77,6 +83,12 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
             self.subtree::<RHO, SPAN>(&subtree, &place, output);
         });
         true
+    }
+
+    /// Where a child lies that is not in its parent's octave.
+    #[inline(never)]
+    fn place_beyond(&self, centre: Point) -> Place {
+        Place::of(self.projection, centre, reciprocal(centre.w as u32))
     }
 
     /// Visits a child that cannot share the map: out of the way of those that

@@ -39,7 +39,7 @@ fn two_levels<const RHO: u8>(seed: u64) {
         let place = Place {
             x: (100 << SCREEN_BITS) + fraction(&mut rng),
             y: (90 << SCREEN_BITS) + fraction(&mut rng),
-            depth: rng.u16(1..),
+            depth: rng.i32(1..65536),
         };
         let brush = [Brush::Point, Brush::Wide, Brush::Square][rng.usize(..3)];
         let reach = steps.reach(rho * rho);
