@@ -31,7 +31,7 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
     #[inline(never)]
     pub(super) fn blocks<'q, const RHO: u8, const FACES: bool>(
         &self,
-        subtree: &Subtree<'_, RHO>,
+        subtree: &Subtree<'_, '_, RHO>,
         level: &Level<'a>,
         start: u32,
         queue: &'q mut Queue<'_, 'a>,
@@ -51,7 +51,7 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
     #[inline(always)]
     fn plain_blocks<'q, const RHO: u8, const FACES: bool, S: Stored>(
         &self,
-        subtree: &Subtree<'_, RHO>,
+        subtree: &Subtree<'_, '_, RHO>,
         level: &Level<'a>,
         start: u32,
         queue: &'q mut Queue<'_, 'a>,
@@ -66,7 +66,7 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
     #[inline(never)]
     fn coded_blocks<'q, const RHO: u8, const FACES: bool>(
         &self,
-        subtree: &Subtree<'_, RHO>,
+        subtree: &Subtree<'_, '_, RHO>,
         level: &Level<'a>,
         coding: &Coding<'a>,
         start: u32,
@@ -79,7 +79,7 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
     #[inline(always)]
     fn read_blocks<'q, const RHO: u8, const FACES: bool, R: Reader>(
         &self,
-        subtree: &Subtree<'_, RHO>,
+        subtree: &Subtree<'_, '_, RHO>,
         level: &Level<'a>,
         reader: R,
         start: u32,
@@ -114,7 +114,7 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
     #[inline(always)]
     fn children<'c, const RHO: u8, R: Reader>(
         &self,
-        subtree: &Subtree<'_, RHO>,
+        subtree: &Subtree<'_, '_, RHO>,
         level: &Level<'c>,
         reader: R,
         start: u32,
@@ -238,7 +238,7 @@ impl Kept<'_, '_> {
 /// The cell itself, whose children, in `level`, are drawn.
 #[inline(always)]
 pub(super) fn block<'q, 'a, const RHO: u8>(
-    subtree: &Subtree<'_, RHO>,
+    subtree: &Subtree<'_, '_, RHO>,
     level: &Level<'a>,
     start: u32,
     queue: &'q mut Queue<'_, 'a>,

@@ -2,7 +2,7 @@
 
 use super::mask;
 use super::record::{Record, link_of, record_of};
-use super::tables::Point;
+use super::tables::{LevelTable, Point};
 use super::traverse::{Cell, Frame};
 use crate::asset::Level;
 
@@ -104,31 +104,52 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
     /// A cell's child and its attribute.
     #[inline(always)]
     pub(super) fn child(&self, cell: &Cell, spot: &Spot) -> Option<(Cell, u16)> {
-        let (centre, view, attribute) = self.child_at(cell, spot)?;
+        let below = self.below(cell)?;
+        let (view, attribute) = below.faced(cell, spot)?;
         let child = Cell {
             depth: cell.depth + 1,
             index: spot.index,
             first_child: spot.first_child,
-            centre,
+            centre: below.centre(cell, spot)?,
             view,
             inside: cell.inside,
         };
         Some((child, attribute))
     }
 
-    /// The centre, view and attribute of a cell's child.
+    /// What a cell's children are found from.
     #[inline(always)]
-    pub(super) fn child_at(&self, cell: &Cell, spot: &Spot) -> Option<(Point, [i32; 3], u16)> {
-        let table = self.tables.below(cell.depth);
-        let attribute = *self.level(cell.depth + 1)?.attributes.get(spot.index)?;
-        let displacement = *table.displacements.get(spot.at)?;
-        let step = *table.eye_displacements.get(spot.at)?;
-        let view = [0, 1, 2].map(|axis| cell.view[axis] + step[axis]);
-        Some((cell.centre.plus(displacement), view, attribute))
+    pub(super) fn below(&self, cell: &Cell) -> Option<Below<'_, CELLS>> {
+        Some(Below {
+            attributes: self.level(cell.depth + 1)?.attributes,
+            table: self.tables.below(cell.depth),
+        })
     }
 
     #[inline(always)]
-    fn level(&self, depth: u8) -> Option<&'a Level<'a>> {
+    pub(super) fn level(&self, depth: u8) -> Option<&'a Level<'a>> {
         self.grid.levels().get(usize::from(depth))
+    }
+}
+
+/// Attributes and displacements of the level below a cell's.
+pub(super) struct Below<'f, const CELLS: usize> {
+    attributes: &'f [u16],
+    table: &'f LevelTable<CELLS>,
+}
+
+impl<const CELLS: usize> Below<'_, CELLS> {
+    /// The view and the attribute of a cell's child: how it faces.
+    #[inline(always)]
+    pub fn faced(&self, cell: &Cell, spot: &Spot) -> Option<([i32; 3], u16)> {
+        let step = *self.table.eye_displacements.get(spot.at)?;
+        let view = [0, 1, 2].map(|axis| cell.view[axis] + step[axis]);
+        Some((view, *self.attributes.get(spot.index)?))
+    }
+
+    /// The centre of a cell's child.
+    #[inline(always)]
+    pub fn centre(&self, cell: &Cell, spot: &Spot) -> Option<Point> {
+        Some(cell.centre.plus(*self.table.displacements.get(spot.at)?))
     }
 }

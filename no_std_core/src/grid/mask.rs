@@ -96,6 +96,14 @@ impl<const RHO: u8> Mask<RHO> {
         Self([word & 0x7ff_ffff, 0, 0, 0, 0])
     }
 
+    /// Replaces the cells. Words that no mask has stay as they are.
+    #[inline(always)]
+    pub fn set(&mut self, other: Self) {
+        for (word, other) in self.0.iter_mut().zip(other.words()) {
+            *word = other;
+        }
+    }
+
     /// Its first word.
     #[inline(always)]
     pub fn first_word(self) -> u32 {

@@ -4,7 +4,6 @@
 //! around its parent, so that tables are filled once for all of them.
 
 use super::affine::Affine;
-use super::children::Spot;
 use super::facing::Facing;
 use super::footprint::Place;
 use super::normals::{Around, Normals};
@@ -38,31 +37,48 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
         let around = Around::new(cell.view, radius(cell.depth), radius(cell.depth + 1));
         let octave = Octave::of(self.projection, inverse);
         let (stop, above) = (self.plan.stop(bottom), self.plan.stop(bottom - 1));
+        let (Some(below), Some(level)) = (self.below(cell), self.level(bottom)) else {
+            return false;
+        };
+        let count = record.children.count() as u32;
+        output.stats.nodes_visited += count;
+        output.stats.facing_tests += if self.plan.faces { count } else { 0 };
+        // One for all children, set for each.
+        let mut own = Record::NOTHING;
         self.for_each_child::<RHO>(cell, record, |spot, record| {
-            let Some((centre, view, attribute)) = self.child_at(cell, &spot) else {
+            let Some((view, attribute)) = below.faced(cell, &spot) else {
                 return;
             };
             let normals = around.normals(view);
-            let w = centre.w;
             let facing = match self.plan.faces {
                 true => normals.facing(record.flags, attribute),
                 false => Facing::Toward,
             };
-            output.stats.facing_tests += u32::from(self.plan.faces);
             if facing == Facing::Away {
-                output.stats.nodes_visited += 1;
                 output.stats.nodes_back_facing += 1;
                 return;
             }
+            let Some(centre) = below.centre(cell, &spot) else {
+                return;
+            };
+            own.set(record);
+            let subtree = Subtree {
+                depth: cell.depth + 1,
+                spot,
+                record: &own,
+                normals: &normals,
+                facing,
+                affine: &affine,
+                level,
+            };
             let place = match octave.place(centre) {
                 Some(place) => place,
                 None => self.place_beyond(centre),
             };
-            let stops = w >= stop && (SPAN == 1 || w < above);
+            let stops = centre.w >= stop && (SPAN == 1 || centre.w < above);
             if !stops || !affine.reach.fits_depth(&place) {
-                return self.alone::<RHO>(cell, &spot, &record, output);
+                return self.alone::<RHO>(cell, &subtree, output);
             }
-            output.stats.nodes_visited += 1;
             if !cell.inside && !self.is_near_strip(&place, output) {
                 output.stats.nodes_outside += 1;
                 return;
@@ -72,14 +88,6 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
                 output.stats.nodes_hidden += 1;
                 return;
             }
-            let subtree = Subtree {
-                depth: cell.depth + 1,
-                spot,
-                record: &record,
-                normals: &normals,
-                facing,
-                affine: &affine,
-            };
             self.subtree::<RHO, SPAN>(&subtree, &place, output);
         });
         true
@@ -97,12 +105,13 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
     fn alone<const RHO: u8>(
         &self,
         cell: &Cell,
-        spot: &Spot,
-        record: &Record<RHO>,
+        subtree: &Subtree<'_, 'a, RHO>,
         output: &mut Output<'_, '_, 'a>,
     ) {
-        if let Some((child, attribute)) = self.child(cell, spot) {
-            self.node::<RHO>(&child, record, attribute, output);
+        // It is counted again.
+        output.stats.nodes_visited -= 1;
+        if let Some((child, attribute)) = self.child(cell, &subtree.spot) {
+            self.node::<RHO>(&child, subtree.record, attribute, output);
         }
     }
 }

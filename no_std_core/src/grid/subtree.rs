@@ -10,6 +10,7 @@ use super::packed::Brush;
 use super::record::Record;
 use super::samples::draw_blocks;
 use super::traverse::{Cell, Frame, Output};
+use crate::asset::Level;
 use crate::numbers::SCREEN_BITS;
 use crate::reciprocal::reciprocal;
 
@@ -25,9 +26,12 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
         normals: &Normals,
         output: &mut Output<'_, '_, 'a>,
     ) -> bool {
+        let bottom = cell.depth + SPAN as u8;
+        let Some(level) = self.level(bottom) else {
+            return false;
+        };
         let inverse = reciprocal(cell.centre.w as u32);
         let place = Place::of(self.projection, cell.centre, inverse);
-        let bottom = cell.depth + SPAN as u8;
         let mut affine = Affine::blank();
         let at = (&place, inverse);
         if !self.map_around::<RHO, SPAN>(cell, at, bottom, normals, &mut affine)
@@ -55,6 +59,7 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
                     false => Facing::Toward,
                 },
                 affine: &affine,
+                level,
             };
             self.subtree::<RHO, SPAN>(&subtree, &place, output);
         }
@@ -65,20 +70,20 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
     #[inline(always)]
     pub(super) fn subtree<const RHO: u8, const SPAN: usize>(
         &self,
-        subtree: &Subtree<'_, RHO>,
+        subtree: &Subtree<'_, 'a, RHO>,
         place: &Place,
         output: &mut Output<'_, '_, 'a>,
     ) {
         let affine = subtree.affine;
         let start = place.step().packed_in_window();
         let start = start.wrapping_add(affine.brush.offset());
-        let bottom = usize::from(subtree.depth) + SPAN;
         let window = output
             .canvas
             .window(place.x >> SCREEN_BITS, place.y >> SCREEN_BITS);
-        let (Some(level), Some(window)) = (self.grid.levels().get(bottom), window) else {
+        let Some(window) = window else {
             return;
         };
+        let level = subtree.level;
         let (queue, stats) = (&mut output.queue, &mut *output.stats);
         let blocks = match (SPAN, subtree.facing) {
             (1, _) => block::<RHO>(subtree, level, start, queue),
@@ -95,13 +100,15 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
 }
 
 /// What a subtree is drawn from.
-pub(super) struct Subtree<'a, const RHO: u8> {
+pub(super) struct Subtree<'s, 'a, const RHO: u8> {
     /// Its cell's.
     pub depth: u8,
     pub spot: Spot,
-    pub record: &'a Record<RHO>,
-    pub normals: &'a Normals,
+    pub record: &'s Record<RHO>,
+    pub normals: &'s Normals,
     /// How all of it faces.
     pub facing: Facing,
-    pub affine: &'a Affine,
+    pub affine: &'s Affine,
+    /// Its bottom's.
+    pub level: &'a Level<'a>,
 }
