@@ -57,9 +57,14 @@ impl Steps {
     #[inline(always)]
     pub fn reach(&self, cells: i32) -> Reach {
         let reach = |of: fn(&Step) -> i32| {
-            let sum = |sum: i32, step| sum.saturating_add(of(step).saturating_abs());
+            let [a, b, c] = self.0.map(|step| of(&step).unsigned_abs());
             // Beyond this nothing fits; below it, the product does.
-            self.0.iter().fold(0, sum).min(1 << 24) * (cells - 1) / 2
+            let limit = 1 << 24;
+            let sum = match a | b | c < limit {
+                true => (a + b + c).min(limit),
+                false => limit,
+            };
+            sum as i32 * (cells - 1) / 2
         };
         Reach {
             x: reach(|step| step.x),
@@ -179,22 +184,16 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
     /// step along an edge d is dX / w - x dw / w, and depth moves by its scale
     /// over w times -dw / w.
     fn steps(&self, depth: u8, place: &Place, inverse: Reciprocal) -> Steps {
-        let bits = self.projection.screen_scale + SCREEN_BITS + 1;
         let [middle_x, middle_y] = self.projection.middle;
-        let (x, y) = (place.x - middle_x.to_bits(), place.y - middle_y.to_bits());
-        let scaled = self.projection.depth_scaled(inverse).min(1 << 30) as i32;
-        let step = |edge: &Point| {
-            // Half edges; dw is at most w.
-            let ratio = inverse.times(edge.w, RATIO_BITS + 1);
-            let shear = |of: i32| ((i64::from(of) * i64::from(ratio)) >> RATIO_BITS) as i32;
-            Step {
-                x: inverse.times(edge.x, bits).saturating_sub(shear(x)),
-                y: inverse.times(edge.y, bits).saturating_sub(shear(y)),
-                depth: -shear(scaled),
-            }
+        let slant = Slant {
+            inverse,
+            bits: self.projection.screen_scale + SCREEN_BITS + 1,
+            x: place.x - middle_x.to_bits(),
+            y: place.y - middle_y.to_bits(),
+            depth: self.projection.depth_scaled(inverse).min(1 << 30) as i32,
         };
         let [first, second, third] = self.tables.extents(depth).half_edges;
-        Steps([step(first), step(second), step(third)])
+        Steps([slant.step(first), slant.step(second), slant.step(third)])
     }
 
     /// What cells of a depth, at a cell's distance, are drawn with.
@@ -222,6 +221,36 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
             Brush::Wide
         } else {
             Brush::Square
+        }
+    }
+}
+
+/// What the steps at a place follow from.
+struct Slant {
+    inverse: Reciprocal,
+    /// Fraction bits of a half edge's step over w.
+    bits: i32,
+    /// The place from the picture's middle, and its depth without the offset.
+    x: i32,
+    y: i32,
+    depth: i32,
+}
+
+impl Slant {
+    /// The step along an edge, given half of it.
+    #[inline(always)]
+    fn step(&self, edge: &Point) -> Step {
+        // dw is at most w.
+        let ratio = self.inverse.times(edge.w, RATIO_BITS + 1);
+        let shear = |of: i32| ((i64::from(of) * i64::from(ratio)) >> RATIO_BITS) as i32;
+        let across = |half: i32, at: i32| {
+            let step = self.inverse.times(half, self.bits);
+            step.saturating_sub(shear(at))
+        };
+        Step {
+            x: across(edge.x, self.x),
+            y: across(edge.y, self.y),
+            depth: -shear(self.depth),
         }
     }
 }
