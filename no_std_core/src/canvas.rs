@@ -104,10 +104,19 @@ impl Touched {
         columns: [i32::MAX, i32::MIN],
     };
 
+    /// Adds columns and rows; where they are within, nothing is stored.
     #[inline(always)]
-    fn add(&mut self, [left, right]: [i32; 2], [top, bottom]: [i32; 2]) {
-        self.rows = [self.rows[0].min(top), self.rows[1].max(bottom)];
-        self.columns = [self.columns[0].min(left), self.columns[1].max(right)];
+    fn add(&mut self, columns: [i32; 2], rows: [i32; 2]) {
+        let widen = |[first, last]: &mut [i32; 2], [low, high]: [i32; 2]| {
+            if low < *first {
+                *first = low;
+            }
+            if high > *last {
+                *last = high;
+            }
+        };
+        widen(&mut self.rows, rows);
+        widen(&mut self.columns, columns);
     }
 }
 

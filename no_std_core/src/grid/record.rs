@@ -76,16 +76,6 @@ impl<const HALVES: usize> Stored for [u16; HALVES] {
 }
 
 impl<const RHO: u8> Record<RHO> {
-    /// To be [set](Self::set).
-    pub const NOTHING: Self = Self {
-        children: Mask::NOTHING,
-        drawn: Mask::NOTHING,
-        flags: Flags {
-            aperture: 0,
-            two_sided: false,
-        },
-    };
-
     /// Replaces the record where it lies: less is stored than of a new one.
     #[inline(always)]
     pub fn set(&mut self, other: Self) {

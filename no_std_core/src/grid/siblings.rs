@@ -44,7 +44,8 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
         output.stats.nodes_visited += count;
         output.stats.facing_tests += if self.plan.faces { count } else { 0 };
         // One for all children, set for each.
-        let mut own = Record::NOTHING;
+        // Set for each child.
+        let mut own = *record;
         self.for_each_child::<RHO>(cell, record, |spot, record| {
             let Some((view, attribute)) = below.faced(cell, &spot) else {
                 return;
