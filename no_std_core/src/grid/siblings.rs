@@ -10,7 +10,6 @@ use super::normals::{Around, Normals};
 use super::octave::Octave;
 use super::record::Record;
 use super::subtree::Subtree;
-use super::tables::Point;
 use super::traverse::{Cell, Frame, Output};
 use crate::reciprocal::reciprocal;
 
@@ -74,7 +73,7 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
             };
             let place = match octave.place(centre) {
                 Some(place) => place,
-                None => self.place_beyond(centre),
+                None => Place::of(self.projection, centre, reciprocal(centre.w as u32)),
             };
             let stops = centre.w >= stop && (SPAN == 1 || centre.w < above);
             if !stops || !affine.reach.fits_depth(&place) {
@@ -92,12 +91,6 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
             self.subtree::<RHO, SPAN>(&subtree, &place, output);
         });
         true
-    }
-
-    /// Where a child lies that is not in its parent's octave.
-    #[inline(never)]
-    fn place_beyond(&self, centre: Point) -> Place {
-        Place::of(self.projection, centre, reciprocal(centre.w as u32))
     }
 
     /// Visits a child that cannot share the map: out of the way of those that
