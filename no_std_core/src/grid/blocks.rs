@@ -96,7 +96,7 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
             free: queue.blocks.iter_mut(),
             attributes: level.attributes.get(link..).unwrap_or(&[]),
         };
-        let normals = FACES.then_some(subtree.normals);
+        let normals = FACES.then_some(&subtree.normals);
         if RHO > 3 {
             children.in_groups(|group| kept.keep::<RHO, R>(group, normals));
         } else {
@@ -123,16 +123,10 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
     where
         'a: 'c,
     {
-        let Subtree {
-            depth,
-            spot,
-            record,
-            ..
-        } = *subtree;
-        let count = place_children(record, start, &subtree.affine.blocks, places);
-        let first = spot.first_child;
+        let count = place_children(&subtree.record, start, &subtree.affine.blocks, places);
+        let first = subtree.spot.first_child;
         let cells = first..first.checked_add(count)?;
-        let own = self.grid.levels().get(usize::from(depth) + 1)?;
+        let own = self.grid.levels().get(usize::from(subtree.depth) + 1)?;
         let [nodes, drawn] = reader.records(level);
         Some(Children {
             reader,

@@ -17,8 +17,14 @@ pub(super) struct Spot {
     pub first_child: usize,
 }
 
-/// No spot's index.
-const NONE: usize = usize::MAX;
+impl Spot {
+    /// Of no child: with an index that none has.
+    pub const NONE: Self = Self {
+        at: 0,
+        index: usize::MAX,
+        first_child: 0,
+    };
+}
 
 impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
     /// Visits the children of a cell with their records: in file order, first
@@ -67,13 +73,8 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
             return;
         };
         let coding = self.coding::<RHO>(cell.depth + 2);
-        let no_spot = Spot {
-            at: 0,
-            index: NONE,
-            first_child: 0,
-        };
         // By subcell.
-        let mut spots = [no_spot; CELLS];
+        let mut spots = [Spot::NONE; CELLS];
         self.for_each_child::<RHO>(cell, record, |spot, _| {
             if let Some(own) = spots.get_mut(spot.at) {
                 *own = spot;
@@ -90,7 +91,7 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
                 for x in 0..rho {
                     let at = along(0, x) + rho * (along(1, y) + rho * along(2, z));
                     if let Some(spot) = spots.get(at)
-                        && spot.index != NONE
+                        && spot.index != Spot::NONE.index
                         && let Some(record) = record_of::<RHO>(next, coding, spot.index)
                         && let Some((child, attribute)) = self.child(cell, spot)
                     {

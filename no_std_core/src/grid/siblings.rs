@@ -4,6 +4,7 @@
 //! around its parent, so that tables are filled once for all of them.
 
 use super::affine::Affine;
+use super::children::Spot;
 use super::facing::Facing;
 use super::footprint::Place;
 use super::normals::{Around, Normals};
@@ -43,8 +44,16 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
         output.stats.nodes_visited += count;
         output.stats.facing_tests += if self.plan.faces { count } else { 0 };
         // One for all children, set for each.
-        // Set for each child.
-        let mut own = *record;
+        // The first three hold for all children, the others are set for each.
+        let mut subtree = Subtree {
+            depth: cell.depth + 1,
+            affine: &affine,
+            level,
+            spot: Spot::NONE,
+            record: *record,
+            normals: *normals,
+            facing: Facing::Toward,
+        };
         self.for_each_child::<RHO>(cell, record, |spot, record| {
             let Some((view, attribute)) = below.faced(cell, &spot) else {
                 return;
@@ -61,16 +70,10 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
             let Some(centre) = below.centre(cell, &spot) else {
                 return;
             };
-            own.set(record);
-            let subtree = Subtree {
-                depth: cell.depth + 1,
-                spot,
-                record: &own,
-                normals: &normals,
-                facing,
-                affine: &affine,
-                level,
-            };
+            subtree.spot = spot;
+            subtree.record.set(record);
+            subtree.normals = normals;
+            subtree.facing = facing;
             let place = match octave.place(centre) {
                 Some(place) => place,
                 None => Place::of(self.projection, centre, reciprocal(centre.w as u32)),
@@ -105,7 +108,7 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
         // It is counted again.
         output.stats.nodes_visited -= 1;
         if let Some((child, attribute)) = self.child(cell, &subtree.spot) {
-            self.node::<RHO>(&child, subtree.record, attribute, output);
+            self.node::<RHO>(&child, &subtree.record, attribute, output);
         }
     }
 }

@@ -52,8 +52,8 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
                     index: cell.index,
                     first_child: cell.first_child,
                 },
-                record,
-                normals,
+                record: *record,
+                normals: *normals,
                 facing: match self.plan.faces {
                     true => normals.facing(record.flags, attribute),
                     false => Facing::Toward,
@@ -95,7 +95,7 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
             Brush::Wide => draw_blocks::<RHO, 2, 1>,
             Brush::Square => draw_blocks::<RHO, 2, 2>,
         };
-        output.stats.samples_drawn += draw(window, blocks, affine, level, subtree.normals);
+        output.stats.samples_drawn += draw(window, blocks, affine, level, &subtree.normals);
     }
 }
 
@@ -103,12 +103,13 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
 pub(super) struct Subtree<'s, 'a, const RHO: u8> {
     /// Its cell's.
     pub depth: u8,
-    pub spot: Spot,
-    pub record: &'s Record<RHO>,
-    pub normals: &'s Normals,
-    /// How all of it faces.
-    pub facing: Facing,
     pub affine: &'s Affine,
     /// Its bottom's.
     pub level: &'a Level<'a>,
+    /// From here on, siblings have each their own.
+    pub spot: Spot,
+    pub record: Record<RHO>,
+    pub normals: Normals,
+    /// How all of it faces.
+    pub facing: Facing,
 }
