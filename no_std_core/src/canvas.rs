@@ -104,19 +104,25 @@ impl Touched {
         columns: [i32::MAX, i32::MIN],
     };
 
-    /// Adds columns and rows; where they are within, nothing is stored.
     #[inline(always)]
-    fn add(&mut self, columns: [i32; 2], rows: [i32; 2]) {
-        let widen = |[first, last]: &mut [i32; 2], [low, high]: [i32; 2]| {
-            if low < *first {
-                *first = low;
+    fn add(&mut self, [left, right]: [i32; 2], [top, bottom]: [i32; 2]) {
+        self.rows = [self.rows[0].min(top), self.rows[1].max(bottom)];
+        self.columns = [self.columns[0].min(left), self.columns[1].max(right)];
+    }
+
+    /// Adds a window: most lie within what was drawn on, and nothing is stored.
+    #[inline(always)]
+    fn add_window(&mut self, column: i32, row: i32) {
+        let widen = |[first, last]: &mut [i32; 2], at: i32| {
+            if at < *first {
+                *first = at;
             }
-            if high > *last {
-                *last = high;
+            if at + 15 > *last {
+                *last = at + 15;
             }
         };
-        widen(&mut self.rows, rows);
-        widen(&mut self.columns, columns);
+        widen(&mut self.rows, row);
+        widen(&mut self.columns, column);
     }
 }
 
@@ -154,7 +160,7 @@ impl<'a> Canvas<'a> {
     pub fn window(&mut self, column: i32, row: i32) -> Option<&mut Window> {
         let row = row - i32::from(self.strip.top) - WINDOW_CENTRE;
         let column = column - i32::from(self.strip.left) - WINDOW_CENTRE;
-        self.touched.add([column, column + 15], [row, row + 15]);
+        self.touched.add_window(column, row);
         let start = ((row + GUARD as i32) * PITCH as i32 + column) as usize;
         self.words.get_mut(start..)?.first_chunk_mut()
     }
