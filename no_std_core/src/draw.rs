@@ -90,7 +90,14 @@ pub fn draw(
     for strip in target.strips() {
         let mut canvas = stages::clear(target.canvas, strip.intersection(plan.part));
         if canvas.strip.pixels() > 0 {
-            traverse(grid, camera, &projection, &plan, &mut canvas, &mut stats);
+            traverse(
+                grid,
+                camera.eye,
+                &projection,
+                &plan,
+                &mut canvas,
+                &mut stats,
+            );
         }
         stages::resolve(&canvas, strip, &plan, &shader, &mut target.picture);
     }

@@ -148,6 +148,11 @@ impl Plan {
         }
     }
 
+    /// How many of the deepest cells span an axis.
+    pub(crate) fn leaves_per_axis(&self, rho: u8) -> u64 {
+        u64::from(rho).saturating_pow(self.depth.into())
+    }
+
     /// From which w on a cell above a depth stops there.
     #[inline(always)]
     pub(crate) fn stop(&self, depth: u8) -> i32 {

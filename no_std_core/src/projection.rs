@@ -34,7 +34,7 @@
 mod part;
 
 use crate::camera::Camera;
-use crate::numbers::{Length, SCREEN_BITS, ScreenPx, bit_length, shift_round};
+use crate::numbers::{Length, SCREEN_BITS, ScreenPx, Unit, bit_length, shift_round};
 use crate::reciprocal::{Reciprocal, reciprocal};
 use crate::target::Rect;
 
@@ -66,6 +66,8 @@ pub(crate) struct Projection {
     pub near: i32,
     /// A block unit of w is 2^w_scale half sides.
     pub w_scale: i32,
+    /// The cube's half side in block units of w, rounded up.
+    pub half_side: i64,
     depth: DepthScale,
 }
 
@@ -81,22 +83,59 @@ struct DepthScale {
     range: [i64; 2],
 }
 
-impl Projection {
-    /// Sets a frame up.
+/// A linear form of model space before it is scaled: value at the cube's
+/// centre and change over the half side along x, y, z, 62 fraction bits, below
+/// 2^98.
+pub(crate) type Row = (i128, [i128; 3]);
+
+/// A camera as a grid sees it.
+pub(crate) struct Sight {
+    /// (p - eye) along right, up and forward.
+    pub rows: [Row; 3],
+    /// The eye in model space, where facing is tested.
+    pub eye: [Length; 3],
+    /// The longest edge of a cell that spans the half cube, in the units of w.
+    pub half_side: Length,
+}
+
+impl Sight {
+    /// Of a camera in model space.
     pub fn new(camera: &Camera) -> Self {
         let eye = camera.eye.map(|c| i128::from(c.to_bits()));
-        let row = |v: [crate::numbers::Unit; 3], negate: bool| {
-            let axes = v.map(|c| {
-                if negate {
-                    -i128::from(c.to_bits())
-                } else {
-                    i128::from(c.to_bits())
-                }
-            });
-            // Q2.30 x Q32.32: 62 fraction bits, below 2^98.
+        let row = |v: [Unit; 3]| {
+            let axes = v.map(|c| i128::from(c.to_bits()));
+            // Q2.30 x Q32.32.
             let centre = -(axes[0] * eye[0] + axes[1] * eye[1] + axes[2] * eye[2]);
             (centre, axes.map(|axis| axis << 32))
         };
+        Self {
+            rows: [row(camera.right), row(camera.up), row(camera.forward)],
+            eye: camera.eye,
+            half_side: Length::ONE,
+        }
+    }
+}
+
+impl Sight {
+    /// The nearest and farthest w.
+    pub fn range(&self) -> [Length; 2] {
+        let (centre, axes) = self.rows[2];
+        let reach: i128 = axes.iter().map(|axis| axis.abs()).sum();
+        [centre - reach, centre + reach].map(|w| Length::from_bits(shift_round(w, 30)))
+    }
+}
+
+impl Projection {
+    /// Sets a frame up for a camera in model space.
+    pub fn new(camera: &Camera) -> Self {
+        Self::of(camera, &Sight::new(camera), None)
+    }
+
+    /// The same for a camera as a grid sees it. `range` is of the w that depths
+    /// resolve; `None` for the cube's own.
+    pub fn of(camera: &Camera, sight: &Sight, range: Option<[Length; 2]>) -> Self {
+        let [right, up, w] = sight.rows;
+        let down = (-up.0, up.1.map(|axis| -axis));
         // The focal length's highest bit goes to bit 30.
         let focal_bits = i128::from(camera.focal_px.to_bits()).max(1);
         let focal_shift = bit_length(focal_bits as u128) - 31;
@@ -106,9 +145,8 @@ impl Projection {
             let scaled = |v: i128| (v >> 22) * focal;
             (scaled(centre), axes.map(scaled))
         };
-        let x = times_focal(row(camera.right, false));
-        let y = times_focal(row(camera.up, true));
-        let w = row(camera.forward, false);
+        let x = times_focal(right);
+        let y = times_focal(down);
         let screen_shift = block_shift(&[x, y]);
         let w_shift = block_shift(&[w]);
         let form = |(centre, axes): (i128, [i128; 3]), shift: i32| Form {
@@ -126,19 +164,20 @@ impl Projection {
         let near = i128::from(camera.near.to_bits().max(1));
         let near = shift_round(near, w_shift + GUARD_BITS - 30).clamp(1, 1 << BLOCK_BITS);
         let middle = |size: u16| ScreenPx::from_bits(i32::from(size) << 11);
+        let w_scale = w_shift + GUARD_BITS - 62;
+        let range = match range {
+            None => range_of(&forms[2]),
+            Some(range) => range.map(|w| shift_round(i128::from(w.to_bits()), w_scale + 32)),
+        };
         Self {
-            depth: DepthScale::new(&forms[2], near),
+            depth: DepthScale::new(range, near),
             forms,
             screen_scale,
             middle: [middle(camera.width), middle(camera.height)],
             near: near as i32,
-            w_scale: w_shift + GUARD_BITS - 62,
+            w_scale,
+            half_side: shift_round(i128::from(sight.half_side.to_bits()), w_scale + 32) + 1,
         }
-    }
-
-    /// The cube's half side in block units of w, rounded up.
-    pub fn half_side(&self) -> i64 {
-        shift_round(1, self.w_scale) + 1
     }
 
     /// Bounds of w over the cube, block units.
@@ -216,9 +255,47 @@ impl Projection {
         }
     }
 
+    /// What leads from depths back to w.
+    pub fn depth_to_w(&self) -> DepthToW {
+        let DepthScale {
+            mantissa,
+            shift,
+            narrow_offset,
+            ..
+        } = self.depth;
+        DepthToW {
+            mantissa,
+            shift: shift - 1,
+            offset: narrow_offset as u32,
+        }
+    }
+
     /// Depth without its offset: proportional to 1 / w.
     pub fn depth_scaled(&self, w: Reciprocal) -> i64 {
         self.depth.scaled(w)
+    }
+}
+
+/// From depths to w.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct DepthToW {
+    /// Of the depth scale.
+    mantissa: u32,
+    shift: i32,
+    offset: u32,
+}
+
+impl DepthToW {
+    /// The w of a depth's middle, block units; at most 2^30.
+    #[inline(always)]
+    pub fn w(&self, depth: u32) -> i32 {
+        let inverse = reciprocal(2 * (depth + self.offset) + 1);
+        let product = u64::from(self.mantissa) * u64::from(inverse.mantissa);
+        let shift = self.shift - inverse.shift;
+        if let 32..=63 = shift {
+            return ((product >> 32) as u32 >> (shift - 32)).min(1 << 30) as i32;
+        }
+        (product >> shift.clamp(0, 63)).min(1 << 30) as i32
     }
 }
 
@@ -254,17 +331,23 @@ impl DepthRange {
     }
 }
 
+/// The nearest and farthest w of the cube.
+fn range_of(w: &Form) -> [i64; 2] {
+    let reach: i64 = w
+        .axes
+        .iter()
+        .map(|axis| axis.saturating_abs() >> GUARD_BITS)
+        .sum::<i64>()
+        + 2;
+    let centre = w.centre >> GUARD_BITS;
+    [centre - reach, centre + reach]
+}
+
 impl DepthScale {
-    fn new(w: &Form, least: i64) -> Self {
-        let reach: i64 = w
-            .axes
-            .iter()
-            .map(|axis| axis.saturating_abs() >> GUARD_BITS)
-            .sum::<i64>()
-            + 2;
-        let centre = w.centre >> GUARD_BITS;
-        let far = (centre + reach).max(1);
-        let near = (centre - reach).max(far >> DEPTH_OCTAVES).max(least).max(1);
+    /// Of the nearest and farthest w, and the least that is drawn.
+    fn new([near, far]: [i64; 2], least: i64) -> Self {
+        let far = far.max(1);
+        let near = near.max(far >> DEPTH_OCTAVES).max(least).max(1);
         // 65534 / (1/near - 1/far) = 65534 near far / (far - near) = scale.
         let span = (far - near).max(1);
         let scale = 65534 * i128::from(near) * i128::from(far) / i128::from(span);
@@ -277,7 +360,12 @@ impl DepthScale {
             range: [near, far],
         };
         // By the same table: its error at far would shift all depths.
-        depth.offset = depth.scaled(reciprocal(far as u32)) - 1;
+        let beyond = (bit_length(far.unsigned_abs().into()) - 31).max(0);
+        let inverse = reciprocal((far >> beyond) as u32);
+        depth.offset = depth.scaled(Reciprocal {
+            shift: inverse.shift - beyond,
+            ..inverse
+        }) - 1;
         depth.narrow_offset = depth.offset.min(1 << 30) as i32;
         depth
     }

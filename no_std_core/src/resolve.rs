@@ -11,6 +11,10 @@
 //! second one below, or the other way round. A gap of one pixel that is really
 //! there is closed, too.
 
+mod merge;
+
+pub(crate) use merge::{Shadowed, merge};
+
 use crate::canvas::{Canvas, PITCH};
 use crate::shade::Shader;
 use crate::target::{Picture, Rect, blank};
@@ -123,15 +127,20 @@ fn row_of(
     }
 }
 
-/// Most pixels are far from any hole: of what lies before them nothing is
-/// nearer by the least gap, and nothing else is looked at.
+/// Whether a pixel is far from any hole, as most are: of what lies before it
+/// nothing is nearer by the least gap.
+#[inline(always)]
+fn is_far_from_holes(around: &Neighbourhood, gap: Gap) -> bool {
+    let ahead = around[OWN - PITCH + 1];
+    let nearest = ahead.max(around[OWN - PITCH]).max(around[OWN - PITCH - 1]);
+    let least = around[OWN].saturating_add(gap.base);
+    nearest <= least && around[OWN - 1] <= least
+}
+
 #[inline(always)]
 fn pixel(around: &Neighbourhood, gap: Gap, colour: &impl Fn(u32) -> u16) -> u16 {
     let own = around[OWN];
-    let ahead = around[OWN - PITCH + 1];
-    let nearest = ahead.max(around[OWN - PITCH]).max(around[OWN - PITCH - 1]);
-    let least = own.saturating_add(gap.base);
-    if own != 0 && nearest <= least && around[OWN - 1] <= least {
+    if own != 0 && is_far_from_holes(around, gap) {
         return colour(own);
     }
     let colour_of = |word| if word == 0 { 0 } else { colour(word) };

@@ -7,48 +7,129 @@
 use crate::asset::{MAX_MATERIALS, Rgb};
 use crate::draw::Light;
 use crate::normal::{CODES, OCTANT, OCTANT_CODES, decode};
+use crate::numbers::Weight;
+use crate::placement::NormalMap;
+use crate::scene::{Lighting, MAX_LAMPS};
 
 /// Brightness steps between black and a material's full colour. A step is an
 /// eighth of a level of 6-bit green: rounding to it adds 1/16 to the half level
 /// that rounding to 5:6:5 costs.
 const STEPS: usize = 512;
 
-/// What shading needs to know of light and materials.
+/// What shading needs to know of lights and materials.
 #[derive(Clone, Copy)]
-struct Model {
+struct Model<'a> {
     /// By material; black behind the last.
     ramps: [Ramp; MAX_MATERIALS],
     /// How many materials there are.
     count: usize,
-    /// Towards the light, times the diffuse weight, Q2.14.
-    towards: [i32; 3],
     /// Weight, Q1.15, with half a step.
     ambient: i32,
+    lamps: [Beam; MAX_LAMPS],
+    /// How many lamps there are.
+    lamp_count: usize,
+    /// How normals meet the lamps; `None` where they do as they are.
+    normals: Option<&'a NormalMap>,
 }
 
-impl Model {
-    /// Brightness for Lambert's cosine, weighted: 0 to [`STEPS`]. Q4.28.
+/// A directional light as normals meet it.
+#[derive(Clone, Copy, Default)]
+struct Beam {
+    /// Towards the light, times the diffuse weight, Q2.14.
+    towards: [i32; 3],
+    /// Share of each channel, Q8.
+    colour: [i32; 3],
+}
+
+/// The share of a channel that white has, Q8.
+const WHITE: i32 = 256;
+
+impl Beam {
+    /// `towards` has unit length, Q2.30.
+    fn new(towards: [i32; 3], diffuse: Weight, colour: Rgb) -> Self {
+        let diffuse = (diffuse.to_bits() >> 16) as i32;
+        Self {
+            // Q2.30 x Q1.15 to Q2.14.
+            towards: towards.map(|c| {
+                let wide = i64::from(c) * i64::from(diffuse);
+                ((wide >> 30) as i32 + 1) >> 1
+            }),
+            colour: colour.map(|c| i32::from(c) + i32::from(c >> 7)),
+        }
+    }
+
+    /// Lambert's cosine, weighted, Q4.28; negative where the normal faces away.
+    #[inline(always)]
+    fn cosine(&self, [x, y, z]: [i32; 3]) -> i32 {
+        // Q2.14 x Q2.14, a unit vector and any other: less than 2^30.
+        x * self.towards[0] + y * self.towards[1] + z * self.towards[2]
+    }
+}
+
+impl<'a> Model<'a> {
+    fn new(
+        ambient: Weight,
+        materials: &[Rgb],
+        beams: impl IntoIterator<Item = Beam>,
+        normals: Option<&'a NormalMap>,
+    ) -> Self {
+        let mut model = Self {
+            ramps: [Ramp::BLACK; MAX_MATERIALS],
+            count: materials.len().min(MAX_MATERIALS),
+            ambient: (ambient.to_bits() >> 16) as i32 + 32,
+            lamps: [Beam::default(); MAX_LAMPS],
+            lamp_count: 0,
+            normals,
+        };
+        for (ramp, &material) in model.ramps.iter_mut().zip(materials) {
+            *ramp = Ramp::new(material);
+        }
+        for (lamp, beam) in model.lamps.iter_mut().zip(beams) {
+            *lamp = beam;
+            model.lamp_count += 1;
+        }
+        model
+    }
+
+    /// Brightness for Lambert's cosine of the only, white light, weighted: 0 to
+    /// [`STEPS`]. Q4.28.
     #[inline(always)]
     fn brightness(&self, dot: i32) -> usize {
-        // Q1.15, at most one each: the sum is below 2^17.
-        let weight = self.ambient + (dot.max(0) >> 13);
-        (weight as usize >> 6).min(STEPS)
+        steps(self.ambient + (dot.max(0) >> 13))
     }
 
-    /// Brightness of a normal code.
-    fn brightness_of(&self, code: u16) -> usize {
-        let [x, y, z] = decode(code);
-        // Q2.14 x Q2.14, a unit vector and any other: less than 2^30.
-        self.brightness(x * self.towards[0] + y * self.towards[1] + z * self.towards[2])
-    }
-
-    fn colour(&self, attribute: u16) -> u16 {
+    /// The colour of an attribute under the lamps whose bits are not set.
+    fn colour(&self, attribute: u16, unlit: u32) -> u16 {
+        let normal = match self.normals {
+            None => decode(attribute),
+            Some(normals) => normals.normal(attribute),
+        };
+        let mut weights = [self.ambient; 3];
+        for (lamp, bit) in self.lamps.iter().take(self.lamp_count).zip(0..) {
+            if unlit >> bit & 1 == 0 {
+                let lit = lamp.cosine(normal).max(0) >> 13;
+                for (weight, share) in weights.iter_mut().zip(lamp.colour) {
+                    *weight += lit * share / WHITE;
+                }
+            }
+        }
         let ramp = &self.ramps[usize::from(attribute >> 13) % MAX_MATERIALS];
-        ramp.colour(self.brightness_of(attribute))
+        ramp.colour(weights.map(steps))
+    }
+
+    /// Whether brightness is that of one white light on normals as they are.
+    fn is_plain(&self) -> bool {
+        self.normals.is_none() && self.lamp_count == 1 && self.lamps[0].colour == [WHITE; 3]
     }
 
     /// Fills the table, material after material.
     fn fill(&self, table: &mut [u16]) {
+        if !self.is_plain() {
+            for (colour, attribute) in table.iter_mut().zip(0u16..) {
+                *colour = self.colour(attribute, 0);
+            }
+            return;
+        }
         let ramps = self.ramps.iter().take(self.count);
         for (colours, ramp) in table.chunks_exact_mut(CODES).zip(ramps) {
             self.fill_material(&ramp.all(), colours);
@@ -66,7 +147,7 @@ impl Model {
         // By the signs' bits: x, y, z from bit 0 on.
         let pairs = [(0, o0, o7), (1, o1, o6), (2, o2, o5), (3, o3, o4)];
         for (octant, own, opposite) in pairs {
-            let [mut light_x, mut light_y, light_z] = self.towards;
+            let [mut light_x, mut light_y, light_z] = self.lamps[0].towards;
             if octant & 1 != 0 {
                 light_x = -light_x;
             }
@@ -111,8 +192,13 @@ impl Ramp {
         (red << 11 | green << 5 | blue) as u16
     }
 
-    fn colour(&self, brightness: usize) -> u16 {
-        Self::packed(self.steps.map(|step| step * brightness as u32))
+    /// The colour for each channel's brightness.
+    fn colour(&self, brightness: [usize; 3]) -> u16 {
+        let mut channels = self.steps;
+        for (channel, brightness) in channels.iter_mut().zip(brightness) {
+            *channel *= brightness as u32;
+        }
+        Self::packed(channels)
     }
 
     /// The colours of all brightnesses.
@@ -129,38 +215,72 @@ impl Ramp {
     }
 }
 
+/// Steps of brightness in a weight, Q1.15. At most four lights' worth: below
+/// 2^19.
+#[inline(always)]
+fn steps(weight: i32) -> usize {
+    (weight as usize >> 6).min(STEPS)
+}
+
 /// Colours of attributes for one frame.
 pub(crate) struct Shader<'a> {
-    model: Model,
+    model: Model<'a>,
+    /// What materials are in ambient light alone.
+    dark: [u16; MAX_MATERIALS],
     table: &'a [u16],
 }
 
 impl<'a> Shader<'a> {
-    /// Fills the table if `memory` holds it: 8192 words for each material.
+    /// For one light in model space. Fills the table if `memory` holds it: 8192
+    /// words for each material.
     pub fn new(light: &Light, materials: &[Rgb], memory: &'a mut [u16]) -> Self {
-        let diffuse = (light.diffuse.to_bits() >> 16) as i32;
-        let mut ramps = [Ramp::BLACK; MAX_MATERIALS];
-        for (ramp, &material) in ramps.iter_mut().zip(materials) {
-            *ramp = Ramp::new(material);
-        }
-        let model = Model {
-            ramps,
-            count: materials.len(),
-            // Q2.30 x Q1.15 to Q2.14.
-            towards: light.towards.map(|c| {
-                let wide = i64::from(c.to_bits()) * i64::from(diffuse);
-                ((wide >> 30) as i32 + 1) >> 1
-            }),
-            ambient: (light.ambient.to_bits() >> 16) as i32 + 32,
-        };
-        let table = match memory.get_mut(..CODES * materials.len()) {
+        let towards = light.towards.map(|c| c.to_bits());
+        let beam = Beam::new(towards, light.diffuse, [255; 3]);
+        Self::with(Model::new(light.ambient, materials, [beam], None), memory)
+    }
+
+    /// The same for a placed grid in a scene's light.
+    pub fn placed(
+        lighting: &Lighting<'_>,
+        normals: &'a NormalMap,
+        materials: &[Rgb],
+        memory: &'a mut [u16],
+    ) -> Self {
+        let beams = lighting.lamps.iter().map(|lamp| {
+            let towards = normals.light(lamp.towards).map(|c| c << 16);
+            Beam::new(towards, lamp.diffuse, lamp.colour)
+        });
+        let sheared = (!normals.is_plain()).then_some(normals);
+        let model = Model::new(lighting.ambient, materials, beams, sheared);
+        Self::with(model, memory)
+    }
+
+    fn with(model: Model<'a>, memory: &'a mut [u16]) -> Self {
+        let ambient = [steps(model.ambient); 3];
+        let table = match memory.get_mut(..CODES * model.count) {
             Some(table) => {
                 model.fill(table);
                 &*table
             }
             None => &[],
         };
-        Self { model, table }
+        Self {
+            dark: model.ramps.map(|ramp| ramp.colour(ambient)),
+            model,
+            table,
+        }
+    }
+
+    /// The colour of an attribute where lamps whose bits are set do not shine.
+    #[inline(always)]
+    pub fn colour_without(&self, attribute: u16, unlit: u32) -> u16 {
+        if unlit == 0 {
+            self.colour(attribute)
+        } else if self.model.lamp_count == 1 {
+            self.dark[usize::from(attribute >> 13) % MAX_MATERIALS]
+        } else {
+            self.model.colour(attribute, unlit)
+        }
     }
 
     /// The table, if it is that of one material.
@@ -183,7 +303,7 @@ impl<'a> Shader<'a> {
     pub fn colour(&self, attribute: u16) -> u16 {
         match self.table.get(usize::from(attribute)) {
             Some(&colour) => colour,
-            None => self.model.colour(attribute),
+            None => self.model.colour(attribute, 0),
         }
     }
 }

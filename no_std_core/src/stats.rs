@@ -21,4 +21,8 @@ pub struct Stats {
     /// Those of them that were projected one by one and drawn as splats of
     /// their own size.
     pub splats_drawn: u32,
+    /// Occupancy masks read for shadow maps.
+    pub casters_visited: u32,
+    /// Squares drawn into shadow maps.
+    pub casters_drawn: u32,
 }

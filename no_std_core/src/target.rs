@@ -80,6 +80,41 @@ pub struct Target<'a> {
     pub(crate) canvas: &'a mut [u32],
 }
 
+/// A target with depths, into which one instance comes after the other.
+pub struct Layers<'a> {
+    target: Target<'a>,
+}
+
+impl<'a> Layers<'a> {
+    /// Of a target that was given depths.
+    ///
+    /// # Errors
+    /// Without depths.
+    pub fn new(target: Target<'a>) -> Result<Self, TargetError> {
+        match target.picture.depth {
+            Some(_) => Ok(Self { target }),
+            None => Err(TargetError::DepthLength),
+        }
+    }
+
+    pub(crate) fn clear(&mut self) {
+        let picture = &mut self.target.picture;
+        blank(picture.colour);
+        if let Some(depth) = &mut picture.depth {
+            blank(depth);
+        }
+    }
+
+    pub(crate) fn strips(&self) -> impl Iterator<Item = Rect> + use<> {
+        self.target.strips()
+    }
+
+    /// The canvas, and what is drawn.
+    pub(crate) fn parts(&mut self) -> (&mut [u32], &mut Picture<'a>) {
+        (self.target.canvas, &mut self.target.picture)
+    }
+}
+
 /// What a frame leaves behind.
 pub(crate) struct Picture<'a> {
     band: Rect,
@@ -198,6 +233,17 @@ impl Picture<'_> {
     pub(crate) fn depths(&mut self, columns: Range<u16>, row: u16) -> Option<&mut [u16]> {
         let range = self.range(columns, row);
         self.depth.as_mut()?.get_mut(range)
+    }
+
+    /// Both of a row of the picture, if depths are asked for.
+    pub(crate) fn layer(
+        &mut self,
+        columns: Range<u16>,
+        row: u16,
+    ) -> Option<(&mut [u16], &mut [u16])> {
+        let range = self.range(columns, row);
+        let depths = self.depth.as_mut()?.get_mut(range.clone())?;
+        Some((self.colour.get_mut(range)?, depths))
     }
 
     /// Zeroes colours, and depths if they are asked for, of rows.

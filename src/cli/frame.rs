@@ -6,8 +6,11 @@ use rhogrid_core::asset::Grid;
 use rhogrid_core::camera::{Camera, Orbit};
 use rhogrid_core::draw::{Light as CoreLight, Quality, draw, shades_len};
 use rhogrid_core::numbers::{FocalPx, Length, SplatPx, Turns, Unit, Weight};
+use rhogrid_core::placement::Placement;
+use rhogrid_core::scene::{Instance, Lamp, Lighting, Memory, Scene, draw_scene};
+use rhogrid_core::shadow::{Method, Shadows};
 use rhogrid_core::stats::Stats;
-use rhogrid_core::target::{Target, canvas_len, frame_hash};
+use rhogrid_core::target::{Layers, Target, canvas_len, frame_hash};
 
 use super::args::{CullingChoice, QualityArgs, RepairChoice, ShadowChoice, ViewArgs};
 use crate::bake::Cube;
@@ -118,6 +121,20 @@ pub fn core_quality(quality: &QualityArgs) -> Quality {
     }
 }
 
+/// The core's shadows.
+pub fn core_shadows(quality: &QualityArgs) -> Shadows {
+    Shadows {
+        method: match quality.shadows {
+            ShadowChoice::Off => Method::Off,
+            ShadowChoice::TwoPass => Method::TwoPass,
+            ShadowChoice::OnePass => Method::OnePass,
+        },
+        size: quality.shadow_size,
+        splat: SplatPx::saturating_from_num(quality.shadow_splat),
+        bias: SplatPx::saturating_from_num(quality.shadow_bias),
+    }
+}
+
 /// A drawn frame.
 #[derive(Clone, Debug)]
 pub struct Frame {
@@ -161,18 +178,75 @@ pub fn draw_frame(
     quality: &Quality,
     repeats: u32,
 ) -> Frame {
+    let mut shades = vec![0; shades_len(grid.materials().len())];
+    timed(camera, repeats, |mut target| {
+        draw(grid, camera, light, quality, &mut shades, &mut target)
+    })
+}
+
+/// The same for a grid whose light casts shadows.
+pub fn draw_shadowed(
+    grid: &Grid<'_>,
+    camera: &Camera,
+    light: &CoreLight,
+    quality: &Quality,
+    shadows: &Shadows,
+    repeats: u32,
+) -> Frame {
+    let instances = [Instance {
+        grid,
+        placement: Placement::IDENTITY,
+        materials: None,
+    }];
+    let lamps = [Lamp {
+        towards: light.towards,
+        colour: [255; 3],
+        diffuse: light.diffuse,
+        casts: true,
+    }];
+    let lighting = Lighting {
+        ambient: light.ambient,
+        lamps: &lamps,
+    };
+    let scene = Scene {
+        instances: &instances,
+        lighting,
+        shadows: *shadows,
+    };
+    draw_placed(&scene, camera, quality, repeats)
+}
+
+/// The same for a scene.
+pub fn draw_placed(scene: &Scene<'_>, camera: &Camera, quality: &Quality, repeats: u32) -> Frame {
+    let materials = scene.instances.iter().map(|instance| {
+        let own = instance.materials.unwrap_or(instance.grid.materials());
+        own.len()
+    });
+    let mut shades = vec![0; shades_len(materials.max().unwrap_or(0))];
+    let casting = scene.lighting.lamps.iter().filter(|lamp| lamp.casts);
+    let mut maps = vec![0; scene.shadows.map_len() * casting.count()];
+    timed(camera, repeats, |target| {
+        let mut layers = Layers::new(target).expect("the target has depths");
+        let memory = Memory {
+            shades: &mut shades,
+            shadows: &mut maps,
+        };
+        draw_scene(scene, camera, quality, memory, &mut layers)
+    })
+}
+
+fn timed(camera: &Camera, repeats: u32, mut draw: impl FnMut(Target<'_>) -> Stats) -> Frame {
     let pixels = usize::from(camera.width) * usize::from(camera.height);
     let (mut colour, mut depth) = (vec![0; pixels], vec![0; pixels]);
     let mut canvas = vec![0; canvas_len(camera.height)];
-    let mut shades = vec![0; shades_len(grid.materials().len())];
     let mut stats = Stats::default();
     let mut times = Vec::new();
     for _ in 0..repeats.max(1) {
-        let mut target = Target::new(camera.width, camera.height, &mut colour, &mut canvas)
+        let target = Target::new(camera.width, camera.height, &mut colour, &mut canvas)
             .and_then(|target| target.with_depth(&mut depth))
             .expect("buffers are as long as the picture");
         let start = std::time::Instant::now();
-        stats = draw(grid, camera, light, quality, &mut shades, &mut target);
+        stats = draw(target);
         times.push(start.elapsed().as_nanos() as u64);
     }
     times.sort_unstable();

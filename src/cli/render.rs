@@ -6,12 +6,14 @@ use clap::Args;
 use rhogrid_core::camera::Camera;
 use rhogrid_core::plan::Plan;
 use rhogrid_core::projection::DepthRange;
+use rhogrid_core::shadow::{Method, Shadows};
 use serde::Serialize;
 
 use super::Failure;
-use super::args::{QualityArgs, ShadowChoice, SourceArgs, ViewArgs};
+use super::args::{QualityArgs, SourceArgs, ViewArgs};
 use super::frame::{
-    Frame, core_camera, core_light, core_quality, draw_frame, float_light, float_view,
+    Frame, core_camera, core_light, core_quality, core_shadows, draw_frame, draw_shadowed,
+    float_light, float_view,
 };
 use super::model::{Model, check_distinct, is_asset, load_geometry, progress_bar};
 use crate::asset_file::AssetFile;
@@ -103,11 +105,6 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
         return Err(Failure::Usage(format!(
             "{output}: pictures are PNG; name it OUT.png"
         )));
-    }
-    if args.quality.shadows != ShadowChoice::Off && !args.reference {
-        return Err(Failure::Usage(
-            "--shadows works with --reference alone; grids are drawn without shadows".into(),
-        ));
     }
     if args
         .input
@@ -232,13 +229,14 @@ fn draw_grid(
         let plan = Plan::new(&grid, &camera, &quality).to_string();
         super::say(format_args!("{}", plan.trim_end()))?;
     }
-    let frame = draw_frame(
-        &grid,
-        &camera,
-        &core_light(&args.quality),
-        &quality,
-        args.frames,
-    );
+    let light = core_light(&args.quality);
+    let frame = match core_shadows(&args.quality) {
+        Shadows {
+            method: Method::Off,
+            ..
+        } => draw_frame(&grid, &camera, &light, &quality, args.frames),
+        shadows => draw_shadowed(&grid, &camera, &light, &quality, &shadows, args.frames),
+    };
     let picture = frame.picture();
     picture.save_png(&output)?;
     let measures = scene.map(|scene| {

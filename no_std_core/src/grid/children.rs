@@ -4,7 +4,8 @@ use super::mask;
 use super::record::{Record, link_of, record_of};
 use super::tables::{LevelTable, Point};
 use super::traverse::{Cell, Frame};
-use crate::asset::Level;
+use crate::asset::coded::Coding;
+use crate::asset::{Grid, Level};
 
 /// Where a child is: in its parent and in its level.
 #[derive(Clone, Copy)]
@@ -26,38 +27,60 @@ impl Spot {
     };
 }
 
+/// Visits the children of a cell, given its depth, its index in its level and
+/// that of its first child, with their records: in file order, first those that
+/// are drawn at their depth, then the others.
+#[inline(always)]
+pub(super) fn children<const RHO: u8>(
+    grid: &Grid<'_>,
+    (depth, index, first_child): (u8, usize, usize),
+    record: &Record<RHO>,
+    mut visit: impl FnMut(Spot, Record<RHO>),
+) {
+    let Some(next) = grid.levels().get(usize::from(depth) + 2) else {
+        return;
+    };
+    let coding = coding::<RHO>(grid, depth + 2);
+    let mut first_child_of = link_of(next, coding, index);
+    let mut children = first_child..;
+    for mask in mask::in_file_order(record) {
+        for (word, offset) in mask.words().zip((0..).step_by(mask::cells(RHO))) {
+            for (bit, index) in mask::bits(word).zip(children.by_ref()) {
+                let Some(record) = record_of::<RHO>(next, coding, index) else {
+                    return;
+                };
+                let spot = Spot {
+                    at: offset + bit,
+                    index,
+                    first_child: first_child_of,
+                };
+                first_child_of += record.children.count();
+                visit(spot, record);
+            }
+        }
+    }
+}
+
+/// How the level of a depth is coded, if it is a tri-grid's and is.
+#[inline(always)]
+pub(super) fn coding<'a, const RHO: u8>(grid: &'a Grid<'_>, depth: u8) -> Option<&'a Coding<'a>> {
+    match RHO {
+        3 => grid.coding(usize::from(depth)),
+        _ => None,
+    }
+}
+
 impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
-    /// Visits the children of a cell with their records: in file order, first
-    /// those that are drawn at their depth, then the others.
+    /// Visits the children of a cell with their records: see [`children`].
     #[inline(always)]
     pub(super) fn for_each_child<const RHO: u8>(
         &self,
         cell: &Cell,
         record: &Record<RHO>,
-        mut visit: impl FnMut(Spot, Record<RHO>),
+        visit: impl FnMut(Spot, Record<RHO>),
     ) {
-        let Some(next) = self.level(cell.depth + 2) else {
-            return;
-        };
-        let coding = self.coding::<RHO>(cell.depth + 2);
-        let mut first_child = link_of(next, coding, cell.index);
-        let mut children = cell.first_child..;
-        for mask in mask::in_file_order(record) {
-            for (word, offset) in mask.words().zip((0..).step_by(mask::cells(RHO))) {
-                for (bit, index) in mask::bits(word).zip(children.by_ref()) {
-                    let Some(record) = record_of::<RHO>(next, coding, index) else {
-                        return;
-                    };
-                    let spot = Spot {
-                        at: offset + bit,
-                        index,
-                        first_child,
-                    };
-                    first_child += record.children.count();
-                    visit(spot, record);
-                }
-            }
-        }
+        let place = (cell.depth, cell.index, cell.first_child);
+        children::<RHO>(self.grid, place, record, visit);
     }
 
     /// Visits the children of a cell with their records and attributes, nearest

@@ -7,9 +7,8 @@
 //! eye.
 
 use crate::asset::node::{APERTURE_ALL, APERTURE_COSINE, APERTURE_SINE, Flags};
-use crate::camera::Camera;
 use crate::normal::{COMPONENT_BITS, OPPOSITE, decode};
-use crate::numbers::{bit_length, shift_round};
+use crate::numbers::{Length, bit_length, shift_round};
 
 /// The scale of eye space and the root's place in it.
 pub(crate) struct EyeSpace {
@@ -20,8 +19,9 @@ pub(crate) struct EyeSpace {
 }
 
 impl EyeSpace {
-    pub fn new(camera: &Camera) -> Self {
-        let eye = camera.eye.map(|c| c.to_bits());
+    /// Of an eye in model space.
+    pub fn new(eye: [Length; 3]) -> Self {
+        let eye = eye.map(|c| c.to_bits());
         let farthest = eye.iter().map(|c| c.unsigned_abs()).max().unwrap_or(0);
         // |eye| + 1 half side and rounding stay below 2^bits half sides.
         let bits = bit_length(u128::from(farthest) + (3 << 31)) - 32;

@@ -8,6 +8,7 @@
 
 mod affine;
 mod blocks;
+mod cast;
 mod children;
 mod clip;
 mod facing;
@@ -25,4 +26,5 @@ mod subtree;
 mod tables;
 mod traverse;
 
+pub(crate) use cast::cast;
 pub(crate) use traverse::traverse;

@@ -34,7 +34,7 @@
 //! for every cell in the picture; only next to an eye inside the cube does the
 //! first term count. The tests below assert all of it.
 
-use crate::projection::{Form, Projection};
+use crate::projection::Form;
 
 /// A point in homogeneous screen space, block units.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -102,14 +102,14 @@ impl<const CELLS: usize, const LEVELS: usize> Tables<CELLS, LEVELS> {
     };
 
     /// Fills the tables of `depth` levels.
-    pub fn fill(&mut self, rho: u8, depth: u8, projection: &Projection, eye_unit: i32) {
+    pub fn fill(&mut self, rho: u8, depth: u8, forms: &[Form; 3], eye_unit: i32) {
         let rho = i64::from(rho);
-        self.centre = point(projection, |form| form.centre);
+        self.centre = point(forms, |form| form.centre);
         let mut cells_per_axis = 1i64;
-        self.root.set_extents(&edges(projection, 1), 1, eye_unit, 0);
+        self.root.set_extents(&edges(forms, 1), 1, eye_unit, 0);
         for (level, depth) in self.levels.iter_mut().zip(1..=i32::from(depth)) {
             cells_per_axis *= rho;
-            let edges = edges(projection, cells_per_axis);
+            let edges = edges(forms, cells_per_axis);
             level.set_extents(&edges, cells_per_axis, eye_unit, depth);
             level.set_displacements(rho, &edges, cells_per_axis, eye_unit);
         }
@@ -211,11 +211,9 @@ const MAX_RHO: usize = 5;
 type HalfEdges = [[i64; 3]; 3];
 
 /// The half edges of cells of which so many span the cube.
-fn edges(projection: &Projection, cells_per_axis: i64) -> HalfEdges {
+fn edges(forms: &[Form; 3], cells_per_axis: i64) -> HalfEdges {
     let count = cells_per_axis.max(1);
-    projection
-        .forms
-        .map(|form| form.axes.map(|axis| axis / count))
+    forms.map(|form| form.axes.map(|axis| axis / count))
 }
 
 /// Advances (x, y, z), x fastest, in steps of two from 1 - rho to rho - 1.
@@ -230,8 +228,7 @@ fn next_place(place: &mut [i64; 3], rho: i64) {
 }
 
 /// Rounds one value of each form to block units.
-fn point(projection: &Projection, value: impl Fn(&Form) -> i64) -> Point {
-    let [x, y, w] = &projection.forms;
+fn point([x, y, w]: &[Form; 3], value: impl Fn(&Form) -> i64) -> Point {
     Point {
         x: round_guard(value(x)),
         y: round_guard(value(y)),

@@ -9,6 +9,7 @@
 //! to the eye comes first, and what it hides is [not visited](super::hidden).
 
 use super::blocks::Queue;
+use super::children::coding;
 use super::clip::{Clip, Side};
 use super::facing::EyeSpace;
 use super::footprint::{Place, is_beside, near_limit};
@@ -18,8 +19,8 @@ use super::samples::Block;
 use super::tables::{Point, Tables};
 use crate::asset::Grid;
 use crate::asset::coded::Coding;
-use crate::camera::Camera;
 use crate::canvas::Canvas;
+use crate::numbers::Length;
 use crate::plan::Plan;
 use crate::projection::Projection;
 use crate::stats::Stats;
@@ -55,10 +56,10 @@ pub(super) struct Cell {
     pub inside: bool,
 }
 
-/// Draws a grid on a clear canvas.
+/// Draws a grid on a clear canvas, seen by an eye in model space.
 pub(crate) fn traverse(
     grid: &Grid<'_>,
-    camera: &Camera,
+    eye: [Length; 3],
     projection: &Projection,
     plan: &Plan,
     canvas: &mut Canvas<'_>,
@@ -66,13 +67,13 @@ pub(crate) fn traverse(
 ) {
     match grid.rho() {
         #[cfg(feature = "rho-2")]
-        2 => run::<2, 8, 15>(grid, camera, projection, plan, canvas, stats),
+        2 => run::<2, 8, 15>(grid, eye, projection, plan, canvas, stats),
         #[cfg(feature = "rho-3")]
-        3 => run::<3, 27, 9>(grid, camera, projection, plan, canvas, stats),
+        3 => run::<3, 27, 9>(grid, eye, projection, plan, canvas, stats),
         #[cfg(feature = "rho-4")]
-        4 => run::<4, 64, 7>(grid, camera, projection, plan, canvas, stats),
+        4 => run::<4, 64, 7>(grid, eye, projection, plan, canvas, stats),
         #[cfg(feature = "rho-5")]
-        5 => run::<5, 125, 6>(grid, camera, projection, plan, canvas, stats),
+        5 => run::<5, 125, 6>(grid, eye, projection, plan, canvas, stats),
         // None opens.
         _ => {}
     }
@@ -81,15 +82,15 @@ pub(crate) fn traverse(
 #[inline(never)]
 fn run<const RHO: u8, const CELLS: usize, const LEVELS: usize>(
     grid: &Grid<'_>,
-    camera: &Camera,
+    eye: [Length; 3],
     projection: &Projection,
     plan: &Plan,
     canvas: &mut Canvas<'_>,
     stats: &mut Stats,
 ) {
-    let eye_space = EyeSpace::new(camera);
+    let eye_space = EyeSpace::new(eye);
     let mut tables = Tables::EMPTY;
-    tables.fill(RHO, plan.depth, projection, eye_space.unit);
+    tables.fill(RHO, plan.depth, &projection.forms, eye_space.unit);
     let clip = Clip::new(projection, &tables, plan.depth, canvas.strip);
     let root = Cell {
         depth: 0,
@@ -226,10 +227,7 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
     /// How the level of a depth is coded, if it is a tri-grid's and is.
     #[inline(always)]
     pub(super) fn coding<const RHO: u8>(&self, depth: u8) -> Option<&'a Coding<'a>> {
-        match RHO {
-            3 => self.grid.coding(usize::from(depth)),
-            _ => None,
-        }
+        coding::<RHO>(self.grid, depth)
     }
 
     /// Whether a subtree centred at a place may touch the strip or what counts

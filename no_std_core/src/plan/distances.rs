@@ -135,7 +135,7 @@ impl Lens {
     /// The root's.
     pub fn distances(&self, rho: i64, projection: &Projection, quality: &Quality) -> Distances {
         // Two half sides.
-        let edge = 2 * projection.half_side();
+        let edge = 2 * projection.half_side;
         let splat = i64::from(quality.splat.to_bits());
         let distortion = i64::from(quality.distortion.to_bits());
         let spans = [rho, rho * rho];

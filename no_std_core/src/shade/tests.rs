@@ -70,7 +70,8 @@ fn brightness_grows_with_the_cosine() {
         let shader = Shader::new(&light, &materials, &mut []);
         let mut all: std::vec::Vec<_> = (0..CODES as u16)
             .map(|code| {
-                let brightness = shader.model.brightness_of(code);
+                let cosine = shader.model.lamps[0].cosine(decode(code));
+                let brightness = shader.model.brightness(cosine);
                 (brightness, shader.colour(code))
             })
             .collect();

@@ -3,6 +3,7 @@
 use clap::{Args, ValueEnum};
 use rhogrid_core::draw::Quality;
 use rhogrid_core::numbers::SplatPx;
+use rhogrid_core::shadow::Shadows;
 
 use super::super::Failure;
 use super::Triple;
@@ -79,9 +80,22 @@ pub struct QualityArgs {
     /// What becomes of what faces away or is hidden
     #[arg(long, value_enum, default_value = "on")]
     pub culling: CullingChoice,
-    /// Shadows; for --reference alone, which traces rays
+    /// How the light casts shadows; --reference traces rays for either way
     #[arg(long, value_enum, default_value = "off")]
     pub shadows: ShadowChoice,
+    /// Texels along a side of the shadow map
+    #[arg(long, value_name = "TEXELS", default_value_t = Shadows::default().size,
+        value_parser = clap::value_parser!(u16).range(i64::from(Shadows::MIN_SIZE)..=i64::from(Shadows::MAX_SIZE)))]
+    pub shadow_size: u16,
+    /// Cells with edges of at most this many texels cast as one square each
+    #[arg(long, value_name = "TEXELS", default_value_t = Shadows::default().splat.to_num(),
+        allow_negative_numbers = true)]
+    pub shadow_splat: f64,
+    /// Times what a surface may differ from its own squares in the map, so that
+    /// it does not shadow itself
+    #[arg(long, value_name = "FACTOR", default_value_t = Shadows::default().bias.to_num(),
+        allow_negative_numbers = true)]
+    pub shadow_bias: f64,
 }
 
 impl QualityArgs {
@@ -98,6 +112,14 @@ impl QualityArgs {
         }
         if !(0.0..=4096.0).contains(&self.splat) {
             return Err(Failure::Usage("--splat must be 0 to 4096 pixels".into()));
+        }
+        if !(0.0..=4096.0).contains(&self.shadow_splat) {
+            return Err(Failure::Usage(
+                "--shadow-splat must be 0 to 4096 texels".into(),
+            ));
+        }
+        if !(0.0..=256.0).contains(&self.shadow_bias) {
+            return Err(Failure::Usage("--shadow-bias must be 0 to 256".into()));
         }
         match self.distortion {
             Some(_) if self.path != PathChoice::Auto => Err(Failure::Usage(

@@ -2,6 +2,7 @@ use super::*;
 use crate::camera::Camera;
 use crate::grid::facing::EyeSpace;
 use crate::numbers::{SCREEN_BITS, SCREEN_ONE};
+use crate::projection::Projection;
 use crate::reciprocal::reciprocal;
 use crate::testing::view::{eye_unit, looking};
 use crate::testing::{Exact, Rng, camera, direction};
@@ -26,9 +27,9 @@ fn descend<const CELLS: usize, const LEVELS: usize>(
     mut visit: impl FnMut(&Projection, &EyeSpace, &Step),
 ) {
     let projection = Projection::new(camera);
-    let eye_space = EyeSpace::new(camera);
+    let eye_space = EyeSpace::new(camera.eye);
     let mut tables = Tables::<CELLS, LEVELS>::EMPTY;
-    tables.fill(rho, LEVELS as u8, &projection, eye_space.unit);
+    tables.fill(rho, LEVELS as u8, &projection.forms, eye_space.unit);
     for _ in 0..4 {
         let mut step = Step {
             depth: 0,

@@ -1,0 +1,71 @@
+//! Scenes: placed grids in the light of up to three lamps, some of which cast
+//! shadows.
+//!
+//! Each instance is drawn on a canvas of its own, as if it were alone, and
+//! comes before what is behind it by depth when its colours are resolved:
+//! normals, materials and shadows are an instance's own then.
+
+mod draw;
+
+pub use draw::{Memory, draw_scene};
+
+use crate::asset::{Grid, Rgb};
+use crate::numbers::{Unit, Weight};
+use crate::placement::Placement;
+use crate::shadow::Shadows;
+
+/// Lamps in a scene at most.
+pub const MAX_LAMPS: usize = 3;
+
+/// A placed grid.
+#[derive(Clone, Copy)]
+pub struct Instance<'a> {
+    /// The grid; several instances may share one.
+    pub grid: &'a Grid<'a>,
+    /// Where it stands.
+    pub placement: Placement,
+    /// Its materials' colours; `None` for the grid's own. Beyond the last one,
+    /// black.
+    pub materials: Option<&'a [Rgb]>,
+}
+
+impl Instance<'_> {
+    /// Its materials' colours.
+    pub(crate) fn colours(&self) -> &[Rgb] {
+        self.materials.unwrap_or(self.grid.materials())
+    }
+}
+
+/// A directional light.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Lamp {
+    /// Unit vector towards the light, world.
+    pub towards: [Unit; 3],
+    /// Its colour at full weight.
+    pub colour: Rgb,
+    /// Diffuse weight.
+    pub diffuse: Weight,
+    /// Whether it casts shadows.
+    pub casts: bool,
+}
+
+/// The lights of a scene: colour = material * (ambient + the sum of lamps'
+/// colour * diffuse * max(0, normal . towards)), no gamma.
+#[derive(Clone, Copy, Debug)]
+pub struct Lighting<'a> {
+    /// Ambient weight.
+    pub ambient: Weight,
+    /// Up to [`MAX_LAMPS`]; further ones are dark.
+    pub lamps: &'a [Lamp],
+}
+
+/// What is drawn.
+#[derive(Clone, Copy)]
+pub struct Scene<'a> {
+    /// The placed grids.
+    pub instances: &'a [Instance<'a>],
+    /// Their light.
+    pub lighting: Lighting<'a>,
+    /// How shadows are drawn.
+    pub shadows: Shadows,
+}

@@ -1,0 +1,96 @@
+//! A shadow map: the depths of what is nearest to the light.
+
+use super::space::{DEPTH_BITS, LightSpace, TEXEL_BITS};
+use crate::asset::Grid;
+use crate::numbers::{Length, SplatPx};
+use crate::placement::Placement;
+use crate::projection::Form;
+use crate::target::blank;
+
+/// Squares of n texels lie side by side without gaps for edges of up to n - 1
+/// and so much more, texels Q16.
+const FILL: u64 = 3 << 14;
+
+/// A map while it is drawn.
+pub(crate) struct Map<'a> {
+    depths: &'a mut [u16],
+    size: usize,
+}
+
+impl<'a> Map<'a> {
+    /// A clear map of so many texels along a side.
+    pub fn new(depths: &'a mut [u16], size: u16) -> Self {
+        blank(depths);
+        Self {
+            depths,
+            size: usize::from(size),
+        }
+    }
+
+    /// Draws a square of texels around a place, u and v with [`TEXEL_BITS`],
+    /// depth with [`DEPTH_BITS`].
+    #[inline(always)]
+    pub fn square(&mut self, [u, v, depth]: [i32; 3], side: usize) {
+        // The texels whose centres lie nearest to the place.
+        let half = ((side as i32) << (TEXEL_BITS - 1)) - (1 << (TEXEL_BITS - 1));
+        let last = self.size.saturating_sub(side);
+        let first = |at: i32| ((at - half) >> TEXEL_BITS).max(0) as usize;
+        let (column, row) = (first(u).min(last), first(v).min(last));
+        let depth = (depth >> DEPTH_BITS).clamp(1, 0xffff) as u16;
+        let mut start = row * self.size + column;
+        for _ in 0..side {
+            let Some(texels) = self.depths.get_mut(start..start + side) else {
+                return;
+            };
+            for texel in texels {
+                if depth > *texel {
+                    *texel = depth;
+                }
+            }
+            start += self.size;
+        }
+    }
+}
+
+/// How a grid's cells reach a map.
+pub(crate) struct CastForms {
+    /// u, v and depth over the cube.
+    pub forms: [Form; 3],
+    /// Depth of the cells that are drawn.
+    pub bottom: u8,
+    /// Their edge, texels Q16.
+    pub edge: u64,
+    /// Texels along a side of their squares.
+    pub side: usize,
+}
+
+impl CastForms {
+    /// Cells with an edge of at most `splat` texels are one square each.
+    pub fn new(space: &LightSpace, grid: &Grid<'_>, placement: &Placement, splat: SplatPx) -> Self {
+        let rho = u64::from(grid.rho()).max(1);
+        let mut edge = edge(space, placement.half_side());
+        let mut bottom = 0;
+        while bottom < grid.depth() && edge > u64::from(splat.to_bits()) {
+            edge = edge.checked_div(rho).unwrap_or(0) + 1;
+            bottom += 1;
+        }
+        let side = ((edge + FILL) >> 16) as usize + 1;
+        Self {
+            forms: space.forms(placement),
+            bottom,
+            edge,
+            side: side.min(usize::from(space.size)),
+        }
+    }
+}
+
+/// Twice a length, an edge's half, in texels, Q16.
+pub(crate) fn edge(space: &LightSpace, half: Length) -> u64 {
+    let [texels, ..] = space.reaches();
+    // 62 + 11 + 17 bits.
+    let half = u128::from(half.to_bits().unsigned_abs());
+    let wide = (half * u128::from(texels.unsigned_abs())) << 17;
+    let radius = u128::from(space.radius().unsigned_abs());
+    let edge = wide.checked_div(radius).unwrap_or(0);
+    edge.min(1 << 40) as u64
+}

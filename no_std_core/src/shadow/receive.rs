@@ -1,0 +1,296 @@
+//! What pixels read in a shadow map.
+//!
+//! With w for its distance along the viewing direction, the place of a pixel
+//! (x, y) in light space is
+//!
+//! ```text
+//! L(eye) + w (L(forward) + x L(right) / f - y L(up) / f),
+//! ```
+//!
+//! x and y being pixels from the picture's middle. L is linear, so that the
+//! part in brackets grows by additions along a row.
+//!
+//! # Bias
+//!
+//! A texel holds the depth of a cell's centre, and a pixel shows the depth of
+//! another. Over a plane at the angle t to the light's, both may lie off by what
+//! the plane rises, tan t, on the way: half a square and half a texel in the
+//! map, half a cell and half a pixel in the picture; and half a cell each along
+//! the light. A shadow takes more than the sum of that.
+
+use super::map::CastForms;
+use super::space::LightSpace;
+use crate::camera::Camera;
+use crate::normal::{CODE_MASK, OCTANT, OCTANT_CODES};
+use crate::numbers::{SplatPx, Unit, bit_length, shift_round};
+use crate::placement::NormalMap;
+use crate::projection::{DepthToW, Projection};
+
+/// Fraction bits of u and v.
+const TEXEL_BITS: i32 = 8;
+/// Fraction bits of depths.
+const DEPTH_BITS: i32 = 1;
+/// Where the surface faces away from the light.
+const AWAY: u8 = u8::MAX;
+/// Steps of the tangents that are tabulated.
+const TANGENT_ONE: usize = 16;
+/// Largest tangent, in steps: of 86 degrees.
+const STEEPEST: usize = 224;
+
+/// A form of light space over a picture's pixels and w.
+#[derive(Clone, Copy, Debug, Default)]
+struct Ray {
+    /// At the eye.
+    eye: i32,
+    /// At the picture's corner, for each block unit of w, 2^-(32 + shift); below
+    /// 2^30 all over the picture.
+    corner: i32,
+    /// Its change from column to column and from row to row.
+    steps: [i32; 2],
+    shift: i32,
+}
+
+impl Ray {
+    #[inline(always)]
+    fn at_row(&self, row: u16) -> i32 {
+        self.corner
+            .wrapping_add(self.steps[1].wrapping_mul(i32::from(row)))
+    }
+}
+
+/// A map and how a picture's pixels find their place in it.
+pub(crate) struct Receiver<'a> {
+    depths: &'a [u16],
+    /// Bias by normal code.
+    slopes: &'a [u8],
+    size: u32,
+    rays: [Ray; 3],
+    to_w: DepthToW,
+    /// Bias of a plane across the light, and for each step of the tangent, Q4
+    /// steps of depth.
+    bias: [i32; 2],
+}
+
+/// A row of a picture before its pixels are looked at: u, v and depth at its
+/// first column, for each block unit of w, and their change.
+#[derive(Clone, Copy)]
+pub(crate) struct Row {
+    starts: [i32; 3],
+}
+
+impl<'a> Receiver<'a> {
+    /// For what of a placed grid is in the picture. `slopes` is memory for
+    /// the biases of all normal codes, a byte each.
+    pub fn new(
+        space: &LightSpace,
+        (depths, slopes): (&'a [u16], &'a mut [u16]),
+        normals: &NormalMap,
+        (camera, projection): (&Camera, &Projection),
+        bias: [i32; 2],
+    ) -> Self {
+        let slopes = bytemuck::cast_slice_mut(slopes);
+        fill_slopes(slopes, normals, space.axes[2]);
+        Self {
+            depths,
+            slopes,
+            size: u32::from(space.size),
+            rays: rays(space, camera, projection),
+            to_w: projection.depth_to_w(),
+            bias,
+        }
+    }
+
+    /// A row of the picture from a column on.
+    #[inline(always)]
+    pub fn row(&self, column: u16, row: u16) -> Row {
+        let start = |ray: &Ray| {
+            let along = ray.steps[0].wrapping_mul(i32::from(column));
+            ray.at_row(row).wrapping_add(along)
+        };
+        let [u, v, depth] = &self.rays;
+        Row {
+            starts: [start(u), start(v), start(depth)],
+        }
+    }
+
+    /// Whether a word of the canvas lies in the shadow at the index-th pixel of
+    /// a row, though its surface faces the light.
+    #[inline(always)]
+    pub fn is_shadowed(&self, row: &Row, index: usize, word: u32) -> bool {
+        let slope = match self.slopes.get(usize::from(word as u16 & CODE_MASK)) {
+            Some(&slope) if slope != AWAY => i32::from(slope),
+            _ => return false,
+        };
+        let [u, v, depth] = self.place(row, index, word);
+        let (column, line) = ((u >> TEXEL_BITS) as u32, (v >> TEXEL_BITS) as u32);
+        if column >= self.size || line >= self.size {
+            return false;
+        }
+        let texel = self.depths.get((line * self.size + column) as usize);
+        let bias = (self.bias[0] + self.bias[1] * slope) >> 4;
+        texel.is_some_and(|&nearest| i32::from(nearest) > (depth >> DEPTH_BITS) + bias)
+    }
+
+    /// Where a word of the canvas lies in light space: u and v with
+    /// [`TEXEL_BITS`], depth with [`DEPTH_BITS`].
+    #[inline(always)]
+    fn place(&self, row: &Row, index: usize, word: u32) -> [i32; 3] {
+        let w = i64::from(self.to_w.w(word >> 16));
+        let [u, v, depth] = &self.rays;
+        let at = |ray: &Ray, start: i32| {
+            let here = start.wrapping_add(ray.steps[0].wrapping_mul(index as i32));
+            ray.eye + (((w * i64::from(here)) >> 32) as i32 >> ray.shift)
+        };
+        let [u_start, v_start, depth_start] = row.starts;
+        [at(u, u_start), at(v, v_start), at(depth, depth_start)]
+    }
+}
+
+/// Tangents between normals and the light, by code; of two opposite codes one
+/// faces away.
+fn fill_slopes(slopes: &mut [u8], normals: &NormalMap, light: [Unit; 3]) {
+    let towards = normals.light(light);
+    if !normals.is_plain() {
+        for (slope, code) in slopes.iter_mut().zip(0u16..) {
+            let [x, y, z] = normals.normal(code);
+            *slope = match x * towards[0] + y * towards[1] + z * towards[2] {
+                dot @ 1.. => tangent(dot),
+                _ => AWAY,
+            };
+        }
+        return;
+    }
+    let (octants, _) = slopes.as_chunks_mut::<OCTANT_CODES>();
+    let [o0, o1, o2, o3, o4, o5, o6, o7] = octants else {
+        return;
+    };
+    // By the signs' bits: x, y, z from bit 0 on.
+    let pairs = [(0, o0, o7), (1, o1, o6), (2, o2, o5), (3, o3, o4)];
+    for (octant, own, opposite) in pairs {
+        let [mut light_x, mut light_y, light_z] = towards;
+        if octant & 1 != 0 {
+            light_x = -light_x;
+        }
+        if octant & 2 != 0 {
+            light_y = -light_y;
+        }
+        for ((normal, own), opposite) in OCTANT.iter().zip(own).zip(opposite) {
+            let [x, y, z] = normal.map(i32::from);
+            let dot = x * light_x + y * light_y + z * light_z;
+            let tangent = tangent(dot.abs());
+            (*own, *opposite) = match dot > 0 {
+                true => (tangent, AWAY),
+                false => (AWAY, tangent),
+            };
+        }
+    }
+}
+
+/// The tangent of an angle by its cosine, Q4.28.
+#[inline(always)]
+fn tangent(cosine: i32) -> u8 {
+    TANGENTS[(cosine >> 20) as usize % TANGENTS.len()]
+}
+
+/// The tangent of an angle by its cosine, in 256ths, rounded up; of more than
+/// one, by rounding, nothing.
+static TANGENTS: [u8; 512] = {
+    let mut table = [0; 512];
+    let mut step = 0;
+    while step < 256 {
+        let sine = ((256 * 256 - step * step) as u64).isqrt() as usize;
+        let tangent = match step {
+            0 => STEEPEST,
+            _ => sine * TANGENT_ONE / step + 1,
+        };
+        table[step] = if tangent < STEEPEST {
+            tangent
+        } else {
+            STEEPEST
+        } as u8;
+        step += 1;
+    }
+    table
+};
+
+fn rays(space: &LightSpace, camera: &Camera, projection: &Projection) -> [Ray; 3] {
+    let bits = [TEXEL_BITS, TEXEL_BITS, DEPTH_BITS];
+    let middle = i64::from(space.size) << (TEXEL_BITS - 1);
+    let middles = [middle, middle, 1 << (15 + DEPTH_BITS)];
+    let radius = i128::from(space.radius());
+    let focal = i128::from(camera.focal_px.to_bits().max(1));
+    let from_middle = space.relative_to_middle(camera.eye);
+    let mut rays = [Ray::default(); 3];
+    let parts = space
+        .axes
+        .iter()
+        .zip(space.reaches())
+        .zip(middles)
+        .zip(bits);
+    for (ray, (((axis, reach), middle), bits)) in rays.iter_mut().zip(parts) {
+        let along = |v: [Unit; 3]| -> i128 {
+            let products = axis.iter().zip(v);
+            products
+                .map(|(a, b)| i128::from(a.to_bits()) * i128::from(b.to_bits()))
+                .sum()
+        };
+        // Q60, in a radius; below 2^66.
+        let per_pixel = |v: [Unit; 3]| {
+            let wide = (along(v) << 32).checked_div(focal).unwrap_or(0);
+            wide.clamp(-(1 << 66), 1 << 66)
+        };
+        let (right, down) = (per_pixel(camera.right), -per_pixel(camera.up));
+        let [width, height] = [camera.width, camera.height].map(i128::from);
+        let across = right * (width - 1) + down * (height - 1);
+        let corner = along(camera.forward) - across / 2;
+        // In a world unit, then in a block unit of w.
+        let in_unit = |part: i128| {
+            let wide = part * i128::from(reach) * (1 << 32);
+            wide.checked_div(radius).unwrap_or(0)
+        };
+        let parts = [corner, right, down].map(in_unit);
+        let largest = parts[0].abs() + parts[1].abs() * width + parts[2].abs() * height;
+        let down = bit_length(largest.unsigned_abs()) - 30;
+        let shift = (60 - 32 - bits - projection.w_scale - down).clamp(0, 31);
+        let down = 60 - 32 - bits - projection.w_scale - shift;
+        let [corner, column, row] = parts.map(|part| {
+            let part = shift_round(part, down);
+            part.clamp(-(1 << 30), 1 << 30) as i32
+        });
+        let eye: i128 = {
+            let products = axis.iter().zip(from_middle);
+            let sum: i128 = products
+                .map(|(a, b)| i128::from(a.to_bits()) * i128::from(b))
+                .sum();
+            (sum * i128::from(reach)).checked_div(radius).unwrap_or(0)
+        };
+        let eye = shift_round(eye, 30 - bits).saturating_add(middle);
+        *ray = Ray {
+            eye: eye.clamp(-(1 << 30), 1 << 30) as i32,
+            corner,
+            steps: [column, row],
+            shift,
+        };
+    }
+    rays
+}
+
+/// The bias that a map's squares ask for, and a picture whose cells have edges
+/// of so many texels, Q16: see the module.
+pub(crate) fn bias(space: &LightSpace, cast: &CastForms, cell: u64, factor: SplatPx) -> [i32; 2] {
+    let [texels, _, steps] = space.reaches();
+    let half = |q16: u64| (q16.min(1 << 24) / 2) as i64;
+    let square = (cast.side as i64) << 16;
+    let along = half(cell) + half(cast.edge);
+    let across = (square + (1 << 16)) / 2 + half(cell) + half(cell);
+    let factor = i64::from(factor.to_bits()).min(1 << 24);
+    // Texels Q16, times Q16, to Q4 steps of depth.
+    let in_steps = |texels_q16: i64| {
+        let wide = i128::from(texels_q16) * i128::from(factor) * i128::from(steps);
+        (wide.checked_div(i128::from(texels)).unwrap_or(0) >> 28).min(1 << 20) as i32
+    };
+    [in_steps(along) + 16, in_steps(across) / TANGENT_ONE as i32]
+}
+
+#[cfg(test)]
+mod tests;
