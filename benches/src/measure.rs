@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use rhogrid::asset_file::AssetFile;
-use rhogrid::cli::{Model, core_light, core_quality, draw_frame, float_light};
+use rhogrid::cli::{Model, core_light, core_quality, core_shadows, draw_frame, float_light};
 use rhogrid::error::Error;
 use rhogrid_core::asset::node::occupied;
 use rhogrid_core::draw::{Light, Quality};
@@ -132,6 +132,7 @@ impl Bench {
             views: self.views.clone(),
             light: core_light(&quality),
             quality: core_quality(&quality),
+            shadows: core_shadows(&quality),
             by_stage: true,
         };
         Ok((asset, job))

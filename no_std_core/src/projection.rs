@@ -32,6 +32,9 @@
 //! within 2^-31. What becomes of that on the screen: see `grid/tables.rs`.
 
 mod part;
+mod unproject;
+
+pub(crate) use unproject::DepthToW;
 
 use crate::camera::Camera;
 use crate::numbers::{Length, SCREEN_BITS, ScreenPx, Unit, bit_length, shift_round};
@@ -255,47 +258,9 @@ impl Projection {
         }
     }
 
-    /// What leads from depths back to w.
-    pub fn depth_to_w(&self) -> DepthToW {
-        let DepthScale {
-            mantissa,
-            shift,
-            narrow_offset,
-            ..
-        } = self.depth;
-        DepthToW {
-            mantissa,
-            shift: shift - 1,
-            offset: narrow_offset as u32,
-        }
-    }
-
     /// Depth without its offset: proportional to 1 / w.
     pub fn depth_scaled(&self, w: Reciprocal) -> i64 {
         self.depth.scaled(w)
-    }
-}
-
-/// From depths to w.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct DepthToW {
-    /// Of the depth scale.
-    mantissa: u32,
-    shift: i32,
-    offset: u32,
-}
-
-impl DepthToW {
-    /// The w of a depth's middle, block units; at most 2^30.
-    #[inline(always)]
-    pub fn w(&self, depth: u32) -> i32 {
-        let inverse = reciprocal(2 * (depth + self.offset) + 1);
-        let product = u64::from(self.mantissa) * u64::from(inverse.mantissa);
-        let shift = self.shift - inverse.shift;
-        if let 32..=63 = shift {
-            return ((product >> 32) as u32 >> (shift - 32)).min(1 << 30) as i32;
-        }
-        (product >> shift.clamp(0, 63)).min(1 << 30) as i32
     }
 }
 

@@ -15,6 +15,8 @@ mod merge;
 
 pub(crate) use merge::{Shadowed, merge};
 
+use core::ops::Range;
+
 use crate::canvas::{Canvas, PITCH};
 use crate::shade::Shader;
 use crate::target::{Picture, Rect, blank};
@@ -96,6 +98,22 @@ fn empty_ends(line: &[u32]) -> [usize; 2] {
     [4 * ahead.count(), 4 * behind.count()]
 }
 
+/// Which of a row's pixels may show something. `above` is how much of the row
+/// above is known to be empty at its ends, and then how much of this one.
+#[inline(always)]
+fn inner(words: &[u32], above: &mut [usize; 2], length: usize) -> Range<usize> {
+    // A hole has something on two sides, and so beside it or above it.
+    let line = words.get(2 * PITCH..2 * PITCH + length + 2);
+    let own = line.map_or([0; 2], empty_ends);
+    let ahead = above[0].min(own[0]);
+    let behind = above[1].min(own[1]);
+    *above = own;
+    // Lines begin one pixel before the colours and end one behind them.
+    let first = ahead.saturating_sub(2).min(length);
+    let last = behind.saturating_sub(2).min(length - first);
+    first..length - last
+}
+
 /// A row of colours, `colour` being that of what is drawn. Its empty ends are
 /// left out: `above` is how much of the row above is known to be empty, and
 /// then how much of this one.
@@ -107,21 +125,16 @@ fn row_of(
     colours: &mut [u16],
     colour: impl Fn(u32) -> u16,
 ) {
-    // A hole has something on two sides, and so beside it or above it.
-    let line = words.get(2 * PITCH..2 * PITCH + colours.len() + 2);
-    let own = line.map_or([0; 2], empty_ends);
-    let ahead = above[0].min(own[0]);
-    let behind = above[1].min(own[1]);
-    *above = own;
-    // Lines begin one pixel before the colours and end one behind them.
-    let first = ahead.saturating_sub(2).min(colours.len());
-    let rest = colours.len() - first;
-    let last = behind.saturating_sub(2).min(rest);
-    let (before, inner) = colours.split_at_mut(first);
-    let (inner, after) = inner.split_at_mut(rest - last);
+    let Range { start, end } = inner(words, above, colours.len());
+    let Some((inner, after)) = colours.split_at_mut_checked(end) else {
+        return;
+    };
+    let Some((before, inner)) = inner.split_at_mut_checked(start) else {
+        return;
+    };
     blank(before);
     blank(after);
-    let around = words.get(first..).unwrap_or(&[]).array_windows();
+    let around = words.get(start..).unwrap_or(&[]).array_windows();
     for (own, around) in inner.iter_mut().zip(around) {
         *own = pixel(around, gap, &colour);
     }

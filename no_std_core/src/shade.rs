@@ -99,6 +99,7 @@ impl<'a> Model<'a> {
     }
 
     /// The colour of an attribute under the lamps whose bits are not set.
+    #[inline(never)]
     fn colour(&self, attribute: u16, unlit: u32) -> u16 {
         let normal = match self.normals {
             None => decode(attribute),

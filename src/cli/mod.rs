@@ -19,7 +19,8 @@ use crate::error::{Error, Place};
 
 pub use args::{QualityArgs, Size, SourceArgs, Triple, ViewArgs};
 pub use frame::{
-    Frame, core_camera, core_light, core_quality, draw_frame, float_light, float_view,
+    Frame, core_camera, core_light, core_quality, core_shadows, draw_frame, draw_placed,
+    draw_shadowed, float_light, float_view,
 };
 pub use info::Description;
 pub use model::Model;

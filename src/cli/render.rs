@@ -73,6 +73,8 @@ struct Report {
     side_tests: u32,
     samples_drawn: u32,
     splats_drawn: u32,
+    casters_visited: u32,
+    casters_drawn: u32,
     pixels_written: usize,
     time_ns: u64,
     frames: u32,
@@ -305,6 +307,8 @@ impl Report {
             side_tests: frame.stats.side_tests,
             samples_drawn: frame.stats.samples_drawn,
             splats_drawn: frame.stats.splats_drawn,
+            casters_visited: frame.stats.casters_visited,
+            casters_drawn: frame.stats.casters_drawn,
             pixels_written: frame.depth.iter().filter(|&&depth| depth > 0).count(),
             time_ns: frame.time_ns,
             frames,
@@ -330,7 +334,7 @@ fn print(args: &RenderArgs, report: &Report) -> Result<(), Failure> {
     if args.verbose {
         super::say(format_args!(
             "  work: {} nodes, {} back-facing, {} outside, {} hidden; {} facing tests, {} side tests; \
-             {} samples one by one; median of {} frames",
+             {} samples one by one; {} nodes and {} squares for shadows; median of {} frames",
             report.nodes_visited,
             report.nodes_back_facing,
             report.nodes_outside,
@@ -338,6 +342,8 @@ fn print(args: &RenderArgs, report: &Report) -> Result<(), Failure> {
             report.facing_tests,
             report.side_tests,
             report.splats_drawn,
+            report.casters_visited,
+            report.casters_drawn,
             report.frames
         ))?;
     }

@@ -9,7 +9,7 @@ use crate::normal::CODES;
 use crate::numbers::{Length, SplatPx, shift_round};
 use crate::placement::{Inverse, NormalMap};
 use crate::plan::Plan;
-use crate::projection::{Projection, Sight};
+use crate::projection::{DepthToW, Projection, Sight};
 use crate::resolve::{Shadowed, merge};
 use crate::shade::Shader;
 use crate::shadow::{CastForms, LightSpace, Map, Method, Receiver, Shadows, Sphere, bias, edge};
@@ -27,6 +27,7 @@ pub struct Memory<'a> {
 }
 
 /// Clears the target and draws a scene into it. Cannot fail.
+#[inline(never)]
 pub fn draw_scene(
     scene: &Scene<'_>,
     camera: &Camera,
@@ -88,7 +89,8 @@ impl InstanceFrame<'_> {
         let shades = if plan.tabulates { shades } else { &mut [] };
         let shader = Shader::placed(&scene.lighting, &normals, self.instance.colours(), shades);
         let cell = |space: &LightSpace| self.cell(space, &plan);
-        let receivers = maps.receivers(self, &normals, &scene.shadows, cell);
+        let to_w = DepthToW::new(&self.projection);
+        let receivers = maps.receivers((self, &to_w), &normals, &scene.shadows, cell);
         for strip in target.strips() {
             let part = strip.intersection(plan.part);
             if part.pixels() == 0 {
@@ -145,26 +147,29 @@ impl<'m> Maps<'m> {
             return Self { maps };
         }
         let sphere = Sphere::around(scene.instances);
-        let mut memories = memory.chunks_exact_mut(scene.shadows.map_len().max(1));
+        let mut rest = memory;
         for (map, lamp) in maps.iter_mut().zip(scene.lighting.lamps) {
-            if lamp.casts {
-                *map = memories
-                    .next()
-                    .and_then(|memory| LampMap::cast(scene, lamp, sphere, memory, stats));
+            if !lamp.casts {
+                continue;
             }
+            let Some((own, others)) = rest.split_at_mut_checked(scene.shadows.map_len()) else {
+                break;
+            };
+            rest = others;
+            *map = LampMap::cast(scene, lamp, sphere, own, stats);
         }
         Self { maps }
     }
 
     /// What pixels of an instance read in them.
-    fn receivers(
-        &mut self,
-        frame: &InstanceFrame<'_>,
+    fn receivers<'r>(
+        &'r mut self,
+        (frame, to_w): (&InstanceFrame<'_>, &'r DepthToW),
         normals: &NormalMap,
         shadows: &Shadows,
         cell: impl Fn(&LightSpace) -> u64,
-    ) -> [Option<Receiver<'_>>; MAX_LAMPS] {
-        let view = (frame.camera, &frame.projection);
+    ) -> [Option<Receiver<'r>>; MAX_LAMPS] {
+        let view = (frame.camera, &frame.projection, to_w);
         self.maps.each_mut().map(|map| {
             let map = map.as_mut()?;
             let space = map.space;
@@ -172,7 +177,7 @@ impl<'m> Maps<'m> {
             let cast = CastForms::new(&space, instance.grid, &instance.placement, shadows.splat);
             let bias = bias(&space, &cast, cell(&space), shadows.bias);
             let memory = (map.depths, &mut *map.slopes);
-            Some(Receiver::new(&space, memory, normals, view, bias))
+            Receiver::new(&space, memory, normals, view, bias)
         })
     }
 }

@@ -27,6 +27,23 @@ impl<'a> Map<'a> {
         }
     }
 
+    /// The window around a place, u and v with [`TEXEL_BITS`], in a map of
+    /// [`PITCH`] texels a side; and its first column and row.
+    #[inline(always)]
+    pub fn window(&mut self, [u, v]: [i32; 2]) -> Option<([i32; 2], &mut Window)> {
+        let last = PITCH as i32 - WINDOW - 1;
+        let first = |at: i32| ((at >> TEXEL_BITS) - WINDOW / 2).clamp(0, last);
+        let first = [first(u), first(v)];
+        let start = first[1] as usize * PITCH + first[0] as usize;
+        let texels = self.depths.get_mut(start..)?.first_chunk_mut()?;
+        Some((first, texels))
+    }
+
+    /// Whether the map has windows: [`PITCH`] texels a side.
+    pub fn has_windows(&self) -> bool {
+        self.size == PITCH
+    }
+
     /// Draws a square of texels around a place, u and v with [`TEXEL_BITS`],
     /// depth with [`DEPTH_BITS`].
     #[inline(always)]
@@ -34,10 +51,9 @@ impl<'a> Map<'a> {
         // The texels whose centres lie nearest to the place.
         let half = ((side as i32) << (TEXEL_BITS - 1)) - (1 << (TEXEL_BITS - 1));
         let last = self.size.saturating_sub(side);
-        let first = |at: i32| ((at - half) >> TEXEL_BITS).max(0) as usize;
-        let (column, row) = (first(u).min(last), first(v).min(last));
+        let first = |at: i32| (((at - half) >> TEXEL_BITS).max(0) as usize).min(last);
         let depth = (depth >> DEPTH_BITS).clamp(1, 0xffff) as u16;
-        let mut start = row * self.size + column;
+        let mut start = first(v) * self.size + first(u);
         for _ in 0..side {
             let Some(texels) = self.depths.get_mut(start..start + side) else {
                 return;
@@ -51,6 +67,16 @@ impl<'a> Map<'a> {
         }
     }
 }
+
+/// Texels from row to row of maps that have windows.
+pub(crate) const PITCH: usize = 256;
+
+/// Rows and columns of a window.
+pub(crate) const WINDOW: i32 = 16;
+
+/// A part of a map: 16 rows and columns, and what squares of two texels at any
+/// of them reach.
+pub(crate) type Window = [u16; WINDOW as usize * (PITCH + 1) + 1];
 
 /// How a grid's cells reach a map.
 pub(crate) struct CastForms {

@@ -13,9 +13,9 @@ mod map;
 mod receive;
 mod space;
 
-pub(crate) use map::{CastForms, Map, edge};
+pub(crate) use map::{CastForms, Map, PITCH, WINDOW, edge};
 pub(crate) use receive::{Receiver, Row, bias};
-pub(crate) use space::{LightSpace, Sphere};
+pub(crate) use space::{DEPTH_BITS, LightSpace, Sphere, TEXEL_BITS};
 
 use crate::normal::CODES;
 use crate::numbers::SplatPx;

@@ -21,7 +21,7 @@
 use super::map::CastForms;
 use super::space::LightSpace;
 use crate::camera::Camera;
-use crate::normal::{CODE_MASK, OCTANT, OCTANT_CODES};
+use crate::normal::{CODES, OCTANT, OCTANT_CODES};
 use crate::numbers::{SplatPx, Unit, bit_length, shift_round};
 use crate::placement::NormalMap;
 use crate::projection::{DepthToW, Projection};
@@ -34,8 +34,9 @@ const DEPTH_BITS: i32 = 1;
 const AWAY: u8 = u8::MAX;
 /// Steps of the tangents that are tabulated.
 const TANGENT_ONE: usize = 16;
-/// Largest tangent, in steps: of 86 degrees.
-const STEEPEST: usize = 224;
+/// Largest tangent, in steps: of 74 degrees. Beyond, a bias that keeps surfaces
+/// from shadowing themselves would let in more light than it does good.
+const STEEPEST: usize = 56;
 
 /// A form of light space over a picture's pixels and w.
 #[derive(Clone, Copy, Debug, Default)]
@@ -51,7 +52,6 @@ struct Ray {
 }
 
 impl Ray {
-    #[inline(always)]
     fn at_row(&self, row: u16) -> i32 {
         self.corner
             .wrapping_add(self.steps[1].wrapping_mul(i32::from(row)))
@@ -62,10 +62,10 @@ impl Ray {
 pub(crate) struct Receiver<'a> {
     depths: &'a [u16],
     /// Bias by normal code.
-    slopes: &'a [u8],
+    slopes: &'a [u8; CODES],
     size: u32,
     rays: [Ray; 3],
-    to_w: DepthToW,
+    to_w: &'a DepthToW,
     /// Bias of a plane across the light, and for each step of the tangent, Q4
     /// steps of depth.
     bias: [i32; 2],
@@ -85,23 +85,23 @@ impl<'a> Receiver<'a> {
         space: &LightSpace,
         (depths, slopes): (&'a [u16], &'a mut [u16]),
         normals: &NormalMap,
-        (camera, projection): (&Camera, &Projection),
+        (camera, projection, to_w): (&Camera, &Projection, &'a DepthToW),
         bias: [i32; 2],
-    ) -> Self {
-        let slopes = bytemuck::cast_slice_mut(slopes);
+    ) -> Option<Self> {
+        let slopes: &mut [u8] = bytemuck::cast_slice_mut(slopes);
+        let slopes: &mut [u8; CODES] = slopes.first_chunk_mut()?;
         fill_slopes(slopes, normals, space.axes[2]);
-        Self {
+        Some(Self {
             depths,
             slopes,
             size: u32::from(space.size),
             rays: rays(space, camera, projection),
-            to_w: projection.depth_to_w(),
+            to_w,
             bias,
-        }
+        })
     }
 
     /// A row of the picture from a column on.
-    #[inline(always)]
     pub fn row(&self, column: u16, row: u16) -> Row {
         let start = |ray: &Ray| {
             let along = ray.steps[0].wrapping_mul(i32::from(column));
@@ -117,17 +117,17 @@ impl<'a> Receiver<'a> {
     /// a row, though its surface faces the light.
     #[inline(always)]
     pub fn is_shadowed(&self, row: &Row, index: usize, word: u32) -> bool {
-        let slope = match self.slopes.get(usize::from(word as u16 & CODE_MASK)) {
-            Some(&slope) if slope != AWAY => i32::from(slope),
-            _ => return false,
-        };
+        let slope = self.slopes[word as usize % CODES];
+        if slope == AWAY {
+            return false;
+        }
         let [u, v, depth] = self.place(row, index, word);
         let (column, line) = ((u >> TEXEL_BITS) as u32, (v >> TEXEL_BITS) as u32);
         if column >= self.size || line >= self.size {
             return false;
         }
         let texel = self.depths.get((line * self.size + column) as usize);
-        let bias = (self.bias[0] + self.bias[1] * slope) >> 4;
+        let bias = (self.bias[0] + self.bias[1] * i32::from(slope)) >> 4;
         texel.is_some_and(|&nearest| i32::from(nearest) > (depth >> DEPTH_BITS) + bias)
     }
 

@@ -1,10 +1,17 @@
 //! Reading in place: checked once by [`Frame::open`], infallible after it.
 
+use rhogrid_core::asset::{MAX_MATERIALS, Rgb};
 use rhogrid_core::camera::Camera;
 use rhogrid_core::draw::{Light, Quality};
-use rhogrid_core::numbers::{FocalPx, Length, SplatPx, Unit, Weight};
+use rhogrid_core::numbers::{Length, SplatPx, Unit, Weight};
+use rhogrid_core::placement::Placement;
+use rhogrid_core::scene::Lamp;
+use rhogrid_core::shadow::{Method, Shadows};
 
-use crate::{CAMERA_WORDS, HEADER_WORDS, MAGIC, Settings, VERSION, VIEW_BYTES, View};
+use crate::{
+    ASSET_BYTES, HEADER_WORDS, INSTANCE_BYTES, LAMP_BYTES, MAGIC, MAX_ASSETS, MAX_INSTANCES,
+    Materials, Placed, Settings, VERSION, VIEW_BYTES, View, lone_light,
+};
 
 /// Why bytes are not a frame file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -15,9 +22,10 @@ pub enum FrameError {
     Version,
     /// The bytes end before the file does.
     Truncated,
-    /// The views or the asset reach beyond the file, or overlap the header.
+    /// A part reaches beyond the file or overlaps the header, there are too
+    /// many, or one names another that is not there.
     Layout,
-    /// The asset's offset is not a multiple of four.
+    /// An asset's offset is not a multiple of four.
     Alignment,
 }
 
@@ -25,14 +33,17 @@ pub enum FrameError {
 #[derive(Clone, Copy, Debug)]
 pub struct Frame<'a> {
     settings: Settings,
+    file: &'a [u8],
     views: &'a [u8],
-    asset: &'a [u8],
+    assets: &'a [u8],
+    instances: &'a [u8],
+    lamps: &'a [u8],
 }
 
 impl<'a> Frame<'a> {
     /// Checks the header and finds the parts. `bytes` may reach beyond the
-    /// file's end: the header says how long it is. The asset is 4-byte
-    /// aligned if `bytes` is.
+    /// file's end: the header says how long it is. Assets are 4-byte aligned if
+    /// `bytes` is.
     ///
     /// # Errors
     /// When the bytes are no frame file, or only the beginning of one.
@@ -48,44 +59,50 @@ impl<'a> Frame<'a> {
             .get(..header.word() as usize)
             .ok_or(FrameError::Truncated)?;
         let size = header.word();
-        let view_count = header.word() as usize;
-        let views_offset = header.word() as usize;
-        let asset_offset = header.word() as usize;
-        let asset_length = header.word() as usize;
-        if !asset_offset.is_multiple_of(4) {
-            return Err(FrameError::Alignment);
-        }
-        let part = |offset: usize, length: Option<usize>| {
-            let end = offset.checked_add(length?)?;
-            file.get(offset..end).filter(|_| offset >= HEADER_WORDS * 4)
+        let mut part = |size: usize, most: usize| {
+            let (count, offset) = (header.word() as usize, header.word() as usize);
+            let end = offset.checked_add(count.checked_mul(size)?)?;
+            let is_sound = offset >= HEADER_WORDS * 4 && count <= most;
+            file.get(offset..end).filter(|_| is_sound)
         };
-        let views_length = view_count.checked_mul(VIEW_BYTES);
-        let views = part(views_offset, views_length).ok_or(FrameError::Layout)?;
-        let asset = part(asset_offset, Some(asset_length)).ok_or(FrameError::Layout)?;
-        let light = Light {
-            towards: header.units(),
-            ambient: Weight::from_bits(header.word()),
-            diffuse: Weight::from_bits(header.word()),
-        };
-        let [splat, distortion] = [0; 2].map(|_| SplatPx::from_bits(header.word()));
-        let switches = header.word();
-        let quality = Quality {
-            splat,
-            distortion,
-            repair: switches & 1 != 0,
-            culling: switches & 2 != 0,
-        };
-        let settings = Settings {
-            width: (size & 0xffff) as u16,
-            height: (size >> 16) as u16,
-            light,
-            quality,
-        };
-        Ok(Self {
-            settings,
+        let views = part(VIEW_BYTES, usize::MAX).ok_or(FrameError::Layout)?;
+        let assets = part(ASSET_BYTES, MAX_ASSETS).ok_or(FrameError::Layout)?;
+        let instances = part(INSTANCE_BYTES, MAX_INSTANCES).ok_or(FrameError::Layout)?;
+        let lamps = part(LAMP_BYTES, usize::MAX).ok_or(FrameError::Layout)?;
+        let frame = Self {
+            settings: settings(size, &mut header),
+            file,
             views,
-            asset,
-        })
+            assets,
+            instances,
+            lamps,
+        };
+        frame.check().map(|()| frame)
+    }
+
+    /// Checks what parts say of others.
+    fn check(&self) -> Result<(), FrameError> {
+        for entry in self.assets.chunks_exact(ASSET_BYTES) {
+            if !Words(entry).word().is_multiple_of(4) {
+                return Err(FrameError::Alignment);
+            }
+            self.asset_of(entry).ok_or(FrameError::Layout)?;
+        }
+        let count = self.assets.len() / ASSET_BYTES;
+        match self
+            .instances()
+            .all(|placed| (placed.asset as usize) < count)
+        {
+            true => Ok(()),
+            false => Err(FrameError::Layout),
+        }
+    }
+
+    fn asset_of(&self, entry: &[u8]) -> Option<&'a [u8]> {
+        let mut words = Words(entry);
+        let (offset, length) = (words.word() as usize, words.word() as usize);
+        let bytes = self.file.get(offset..offset.checked_add(length)?);
+        bytes.filter(|_| offset >= HEADER_WORDS * 4)
     }
 
     /// What all views share.
@@ -94,51 +111,111 @@ impl<'a> Frame<'a> {
     }
 
     /// The views, in order.
-    pub fn views(&self) -> Views<'a> {
-        Views {
-            rest: self.views,
-            settings: self.settings,
-        }
-    }
-
-    /// The asset's bytes.
-    pub fn asset(&self) -> &'a [u8] {
-        self.asset
-    }
-}
-
-/// Iterator over the views of a [`Frame`].
-#[derive(Clone, Debug)]
-pub struct Views<'a> {
-    rest: &'a [u8],
-    settings: Settings,
-}
-
-impl Iterator for Views<'_> {
-    type Item = View;
-
-    fn next(&mut self) -> Option<View> {
-        let (view, rest) = self.rest.split_at_checked(VIEW_BYTES)?;
-        self.rest = rest;
-        let (warm_up, measured) = view.split_at_checked(CAMERA_WORDS * 4)?;
-        Some(View {
-            warm_up: camera(warm_up, &self.settings),
-            measured: camera(measured, &self.settings),
+    pub fn views(&self) -> impl Iterator<Item = View> + use<'a> {
+        let settings = self.settings;
+        self.views.chunks_exact(VIEW_BYTES).map(move |view| {
+            let mut words = Words(view);
+            View {
+                warm_up: camera(&mut words, &settings),
+                measured: camera(&mut words, &settings),
+            }
         })
     }
+
+    /// The assets' bytes.
+    pub fn assets(&self) -> impl Iterator<Item = &'a [u8]> + use<'a> {
+        let frame = *self;
+        let entries = self.assets.chunks_exact(ASSET_BYTES);
+        entries.filter_map(move |entry| frame.asset_of(entry))
+    }
+
+    /// Where they stand.
+    pub fn instances(&self) -> impl Iterator<Item = Placed> + use<'a> {
+        self.instances.chunks_exact(INSTANCE_BYTES).map(placed)
+    }
+
+    /// The lights.
+    pub fn lamps(&self) -> impl Iterator<Item = Lamp> + use<'a> {
+        self.lamps.chunks_exact(LAMP_BYTES).map(lamp)
+    }
+
+    /// The light of one asset that stands alone and casts no shadows: what
+    /// [`rhogrid_core::draw::draw`] draws. `None` for scenes.
+    pub fn lone_light(&self) -> Option<Light> {
+        let (mut instances, mut lamps) = (self.instances(), self.lamps());
+        let first = (instances.next(), lamps.next());
+        match (instances.next(), lamps.next()) {
+            (None, None) => lone_light(&self.settings, first.0, first.1),
+            _ => None,
+        }
+    }
 }
 
-fn camera(bytes: &[u8], settings: &Settings) -> Camera {
-    let mut words = Words(bytes);
+fn settings(size: u32, header: &mut Words<'_>) -> Settings {
+    let ambient = Weight::from_bits(header.word());
+    let [splat, distortion] = [0; 2].map(|_| SplatPx::from_bits(header.word()));
+    let switches = header.word();
+    Settings {
+        width: (size & 0xffff) as u16,
+        height: (size >> 16) as u16,
+        ambient,
+        quality: Quality {
+            splat,
+            distortion,
+            repair: switches & 1 != 0,
+            culling: switches & 2 != 0,
+        },
+        shadows: Shadows {
+            method: match switches >> 2 & 3 {
+                0 => Method::Off,
+                1 => Method::TwoPass,
+                _ => Method::OnePass,
+            },
+            size: header.word() as u16,
+            splat: SplatPx::from_bits(header.word()),
+            bias: SplatPx::from_bits(header.word()),
+        },
+    }
+}
+
+fn camera(words: &mut Words<'_>, settings: &Settings) -> Camera {
     Camera {
-        eye: [words.double(), words.double(), words.double()].map(Length::from_bits),
+        eye: words.lengths(),
         right: words.units(),
         up: words.units(),
         forward: words.units(),
-        focal_px: FocalPx::from_bits(words.double()),
-        near: Length::from_bits(words.double()),
+        focal_px: words.length(),
+        near: words.length(),
         width: settings.width,
         height: settings.height,
+    }
+}
+
+fn placed(bytes: &[u8]) -> Placed {
+    let mut words = Words(bytes);
+    let (asset, count) = (words.word(), words.word());
+    let colours = [0; MAX_MATERIALS].map(|_| words.rgb());
+    let materials = Materials {
+        count: count.min(MAX_MATERIALS as u32) as u8,
+        colours,
+    };
+    Placed {
+        asset,
+        materials: (count > 0).then_some(materials),
+        placement: Placement {
+            origin: words.lengths(),
+            axes: [0; 3].map(|_| words.lengths()),
+        },
+    }
+}
+
+fn lamp(bytes: &[u8]) -> Lamp {
+    let mut words = Words(bytes);
+    Lamp {
+        towards: words.units(),
+        colour: words.rgb(),
+        diffuse: Weight::from_bits(words.word()),
+        casts: words.word() != 0,
     }
 }
 
@@ -155,13 +232,22 @@ impl Words<'_> {
         u32::from_le_bytes(*word)
     }
 
-    fn double(&mut self) -> i64 {
+    fn length(&mut self) -> Length {
         let low = u64::from(self.word());
         let high = u64::from(self.word());
-        (high << 32 | low).cast_signed()
+        Length::from_bits((high << 32 | low).cast_signed())
+    }
+
+    fn lengths(&mut self) -> [Length; 3] {
+        [self.length(), self.length(), self.length()]
     }
 
     fn units(&mut self) -> [Unit; 3] {
         [self.word(), self.word(), self.word()].map(|word| Unit::from_bits(word.cast_signed()))
+    }
+
+    fn rgb(&mut self) -> Rgb {
+        let [red, green, blue, _] = self.word().to_le_bytes();
+        [red, green, blue]
     }
 }

@@ -18,7 +18,10 @@ use rhogrid_core::asset::Grid;
 use rhogrid_core::camera::{Camera, Orbit};
 use rhogrid_core::draw::{Light, Quality, draw, shades_len};
 use rhogrid_core::numbers::{FocalPx, Length, SplatPx, Turns, Unit, Weight};
-use rhogrid_core::target::{Rect, Target, frame_hash};
+use rhogrid_core::placement::Placement;
+use rhogrid_core::scene::{Instance, Lamp, Lighting, Memory, Scene, draw_scene};
+use rhogrid_core::shadow::{Method, Shadows};
+use rhogrid_core::target::{Layers, Rect, Target, frame_hash};
 use rhogrid_frame::Frame;
 
 /// Bytes of whatever length and content.
@@ -56,7 +59,8 @@ fn unknown_camera() -> Camera {
 /// Every entry once, on a whole picture and on a band.
 fn every_entry() {
     if let Ok(frame) = Frame::open(unknown_bytes()) {
-        black_box((frame.settings(), frame.asset()));
+        black_box((frame.settings(), frame.assets().last(), frame.lone_light()));
+        black_box((frame.instances().last(), frame.lamps().last()));
         black_box(frame.views().last());
     }
     let orbit = Orbit {
@@ -83,6 +87,7 @@ fn every_entry() {
     let part = Target::band(band, unknown_words(), unknown_canvas());
     draw_unknown(whole.ok());
     draw_unknown(part.ok());
+    draw_unknown_scene();
     black_box(frame_hash(unknown_words()));
 
     if cfg!(feature = "planted") {
@@ -127,5 +132,60 @@ fn draw_unknown(target: Option<Target<'_>>) {
         &quality,
         unknown_words(),
         &mut target,
+    ));
+}
+
+fn draw_unknown_scene() {
+    let layers = Target::new(
+        black_box(0),
+        black_box(0),
+        unknown_words(),
+        unknown_canvas(),
+    )
+    .and_then(|target| Layers::new(target.with_depth(unknown_words())?));
+    let (Ok(grid), Ok(mut layers)) = (Grid::open(unknown_bytes()), layers) else {
+        return;
+    };
+    let lengths = || [0; 3].map(|_| black_box(Length::ZERO));
+    let turned = Placement::turned(black_box(Turns::ZERO), black_box(Length::ZERO), lengths());
+    let placed = Placement {
+        axes: [lengths(), lengths(), lengths()],
+        origin: lengths(),
+    };
+    let instances = [turned, placed].map(|placement| Instance {
+        grid: &grid,
+        placement,
+        materials: black_box(None),
+    });
+    let lamp = || Lamp {
+        towards: [0; 3].map(|_| black_box(Unit::ZERO)),
+        colour: black_box([0; 3]),
+        diffuse: black_box(Weight::ZERO),
+        casts: black_box(true),
+    };
+    let scene = Scene {
+        instances: &instances,
+        lighting: Lighting {
+            ambient: black_box(Weight::ZERO),
+            lamps: &[lamp(), lamp(), lamp()],
+        },
+        shadows: Shadows {
+            method: black_box(Method::OnePass),
+            size: black_box(0),
+            splat: black_box(SplatPx::ZERO),
+            bias: black_box(SplatPx::ZERO),
+        },
+    };
+    let memory = Memory {
+        shades: unknown_words(),
+        shadows: unknown_words(),
+    };
+    let quality = black_box(Quality::default());
+    black_box(draw_scene(
+        &scene,
+        &unknown_camera(),
+        &quality,
+        memory,
+        &mut layers,
     ));
 }

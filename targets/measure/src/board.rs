@@ -2,7 +2,9 @@
 
 use core::fmt;
 
+use rhogrid_core::asset::Grid;
 use rhogrid_core::target::canvas_len;
+use rhogrid_frame::MAX_ASSETS;
 
 /// Pixels of the largest picture.
 pub const PIXELS: usize = 240 * 320;
@@ -13,9 +15,11 @@ pub const CANVAS: usize = canvas_len(320);
 /// Words of the largest shade table: eight materials of 8192 normals.
 pub const SHADES: usize = 8 * 8192;
 
+/// Words for shadow maps: one of 512 texels a side, or three of 256.
+pub const SHADOWS: usize = 512 * 512 + 8192 / 2;
+
 /// The memory that drawing needs, as one static of the firmware.
 #[repr(C, align(4096))]
-#[derive(Debug)]
 pub struct Buffers {
     /// Colours, RGB565; first, so that a screen finds them aligned.
     pub colour: [u16; PIXELS],
@@ -23,6 +27,12 @@ pub struct Buffers {
     pub canvas: [u32; CANVAS],
     /// Shade table.
     pub shades: [u16; SHADES],
+    /// Depths, for scenes.
+    pub depth: [u16; PIXELS],
+    /// Shadow maps, for scenes.
+    pub shadows: [u16; SHADOWS],
+    /// The assets, opened.
+    pub grids: [Option<Grid<'static>>; MAX_ASSETS],
 }
 
 impl Buffers {
@@ -32,6 +42,9 @@ impl Buffers {
             colour: [0; PIXELS],
             canvas: [0; CANVAS],
             shades: [0; SHADES],
+            depth: [0; PIXELS],
+            shadows: [0; SHADOWS],
+            grids: [const { None }; MAX_ASSETS],
         }
     }
 }

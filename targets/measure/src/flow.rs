@@ -4,14 +4,13 @@ use core::fmt;
 use core::hint::black_box;
 
 use rhogrid_core::asset::{AssetError, Grid};
-use rhogrid_core::camera::Camera;
-use rhogrid_core::draw::{draw, shades_len};
-use rhogrid_core::stats::Stats;
-use rhogrid_core::target::{Target, TargetError, frame_hash};
-use rhogrid_frame::{Frame, FrameError, Settings};
+use rhogrid_core::draw::shades_len;
+use rhogrid_core::target::{TargetError, frame_hash};
+use rhogrid_frame::{Frame, FrameError};
 
 use crate::PROTOCOL;
 use crate::board::{Board, Buffers};
+use crate::content::{Content, Memories};
 
 /// Loop counts whose cost must come out exactly: the timer's ticks fall on
 /// instructions in a pattern, and these meet every phase of it.
@@ -26,8 +25,12 @@ pub enum Failure {
     Asset(AssetError),
     /// The picture does not fit the buffers.
     Target(TargetError),
-    /// The asset wants a longer shade table than this.
+    /// An asset wants a longer shade table than this.
     Shades(usize),
+    /// The lamps want more memory for shadow maps than this.
+    Shadows(usize),
+    /// An instance of no asset, or no instance.
+    Instance,
     /// Drawing used all of the stack.
     Stack,
     /// Nobody listens.
@@ -74,29 +77,41 @@ pub fn run<B: Board>(board: &mut B, buffers: &'static mut Buffers) -> Result<(),
 fn measure_all<B: Board>(board: &mut B, buffers: &'static mut Buffers) -> Result<(), Failure> {
     let frame = Frame::open(board.frame_file())?;
     let settings = frame.settings();
-    let grid = Grid::open(frame.asset())?;
     let Buffers {
         colour,
         canvas,
         shades,
+        depth,
+        shadows,
+        grids,
     } = buffers;
+    for (grid, asset) in grids.iter_mut().zip(frame.assets()) {
+        *grid = Some(Grid::open(asset)?);
+    }
     let pixels = usize::from(settings.width) * usize::from(settings.height);
     let colour = colour.get_mut(..pixels).ok_or(TargetError::ColourLength)?;
-    let shades_len = shades_len(grid.materials().len());
-    let shades = shades
-        .get_mut(..shades_len)
-        .ok_or(Failure::Shades(shades_len))?;
+    let depth = depth.get_mut(..pixels).ok_or(TargetError::DepthLength)?;
+    let content = Content::new(&frame, grids)?;
+    let (instances, count) = content.instances()?;
+    let instances = instances.get(..count).unwrap_or(&instances);
+    let shades_len = shades_len(content.materials());
+    let mut memory = Memories {
+        shades: shades
+            .get_mut(..shades_len)
+            .ok_or(Failure::Shades(shades_len))?,
+        shadows: content.shadows(shadows)?,
+        canvas,
+    };
 
     writeln!(board, "RHOGRID {PROTOCOL} {}", frame.views().count())?;
     check_timer(board)?;
     for (index, view) in frame.views().enumerate() {
-        let mut target = Target::new(settings.width, settings.height, colour, canvas)?;
-        drawn(&grid, &view.warm_up, &settings, shades, &mut target);
+        content.draw(instances, &view.warm_up, colour, depth, &mut memory)?;
 
         board.paint_stack();
         board.restart_timer();
         let start = board.ticks();
-        let stats = drawn(&grid, &view.measured, &settings, shades, &mut target);
+        let stats = content.draw(instances, &view.measured, colour, depth, &mut memory)?;
         let end = board.ticks();
         let stack = board.painted_over().ok_or(Failure::Stack)?;
         black_box(stats);
@@ -127,24 +142,4 @@ fn check_timer<B: Board>(board: &mut B) -> fmt::Result {
         writeln!(board, "SPIN {loops} {start} {end}")?;
     }
     Ok(())
-}
-
-/// The draw call. Not inlined, so that all of its stack lies below the
-/// caller's frame.
-#[inline(never)]
-fn drawn(
-    grid: &Grid<'_>,
-    camera: &Camera,
-    settings: &Settings,
-    shades: &mut [u16],
-    target: &mut Target<'_>,
-) -> Stats {
-    draw(
-        grid,
-        camera,
-        &settings.light,
-        &settings.quality,
-        shades,
-        target,
-    )
 }

@@ -27,6 +27,7 @@
 extern crate std;
 
 mod board;
+mod content;
 mod flow;
 
 pub use board::{Board, Buffers, PIXELS, SHADES};

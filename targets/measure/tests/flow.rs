@@ -4,9 +4,11 @@
 use std::fmt;
 
 use rhogrid_core::camera::{Camera, Orbit};
-use rhogrid_core::draw::{Light, Quality};
+use rhogrid_core::draw::Quality;
 use rhogrid_core::numbers::{FocalPx, Length, Turns, Unit, Weight};
-use rhogrid_frame::{Settings, View};
+use rhogrid_core::scene::Lamp;
+use rhogrid_core::shadow::Shadows;
+use rhogrid_frame::{Content, Placed, Settings, View};
 use rhogrid_measure::{Board, Buffers, Failure, run};
 
 /// Counts a tick for each reading.
@@ -75,19 +77,29 @@ fn file(height: u16, asset: &[u8]) -> Vec<u8> {
     let settings = Settings {
         width: 240,
         height,
-        light: Light {
-            towards: [Unit::ONE, Unit::ZERO, Unit::ZERO],
-            ambient: Weight::ZERO,
-            diffuse: Weight::ONE,
-        },
+        ambient: Weight::ZERO,
         quality: Quality::default(),
+        shadows: Shadows::default(),
+    };
+    let lamp = Lamp {
+        towards: [Unit::ONE, Unit::ZERO, Unit::ZERO],
+        colour: [255; 3],
+        diffuse: Weight::ONE,
+        casts: true,
     };
     let view = View {
         warm_up: camera,
         measured: camera,
     };
     let mut bytes = Vec::new();
-    rhogrid_frame::write(&settings, &[view; 2], asset, |piece| bytes.extend(piece));
+    let content = Content {
+        settings,
+        views: &[view; 2],
+        assets: &[asset],
+        instances: &[Placed::ALONE],
+        lamps: &[lamp],
+    };
+    rhogrid_frame::write(&content, |piece| bytes.extend(piece));
     bytes
 }
 

@@ -4,8 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use rhogrid::error::Error;
-use rhogrid_core::draw::{Light, Quality};
-use rhogrid_frame::{Frame, Settings, View};
+use rhogrid_frame::{Content, Frame, MAX_ASSETS, MAX_INSTANCES};
 
 use crate::aligned::AlignedBytes;
 use crate::failure;
@@ -16,27 +15,21 @@ use crate::machine::Machine;
 pub struct FrameFile(AlignedBytes);
 
 impl FrameFile {
-    /// Writes cameras, all of one size, and an asset.
+    /// Writes what is drawn.
     ///
     /// # Errors
-    /// When they do not fit a frame file.
-    pub fn new(
-        asset: &[u8],
-        views: &[View],
-        light: Light,
-        quality: Quality,
-    ) -> Result<Self, Error> {
-        let size = views.first().map(|view| view.measured);
-        let settings = Settings {
-            width: size.map_or(0, |camera| camera.width),
-            height: size.map_or(0, |camera| camera.height),
-            light,
-            quality,
-        };
+    /// When it does not fit a frame file.
+    pub fn new(content: &Content<'_>) -> Result<Self, Error> {
         let mut bytes = Vec::new();
-        let put = |piece: &[u8]| bytes.extend_from_slice(piece);
-        rhogrid_frame::write(&settings, views, asset, put)
-            .ok_or_else(|| failure("a frame file is smaller than 4 GB", "use a smaller asset"))?;
+        rhogrid_frame::write(content, |piece| bytes.extend_from_slice(piece)).ok_or_else(|| {
+            failure(
+                format!(
+                    "a frame file is smaller than 4 GB, with at most {MAX_ASSETS} assets and \
+                     {MAX_INSTANCES} instances"
+                ),
+                "use smaller or fewer assets",
+            )
+        })?;
         Ok(Self(AlignedBytes::new(&bytes)))
     }
 
@@ -82,13 +75,28 @@ mod tests {
     use super::*;
     use crate::machine::MACHINES;
     use rhogrid_core::camera::{Camera, Orbit};
-    use rhogrid_core::numbers::{FocalPx, Length, Turns, Unit, Weight};
+    use rhogrid_core::draw::Quality;
+    use rhogrid_core::numbers::{FocalPx, Length, Turns, Weight};
+    use rhogrid_core::shadow::Shadows;
+    use rhogrid_frame::{Placed, Settings, View};
 
-    const LIGHT: Light = Light {
-        towards: [Unit::ONE, Unit::ZERO, Unit::ZERO],
-        ambient: Weight::ZERO,
-        diffuse: Weight::ONE,
-    };
+    fn file(asset: &[u8], views: &[View]) -> FrameFile {
+        let settings = Settings {
+            width: 240,
+            height: 320,
+            ambient: Weight::ZERO,
+            quality: Quality::default(),
+            shadows: Shadows::default(),
+        };
+        let content = Content {
+            settings,
+            views,
+            assets: &[asset],
+            instances: &[Placed::ALONE],
+            lamps: &[],
+        };
+        FrameFile::new(&content).expect("fits a file")
+    }
 
     #[test]
     fn views_and_asset_are_in_the_file() {
@@ -102,17 +110,17 @@ mod tests {
             warm_up: camera,
             measured: camera,
         };
-        let file = FrameFile::new(b"asset", &[view; 2], LIGHT, Quality::default()).expect("fits");
+        let file = file(b"asset", &[view; 2]);
         let frame = file.open().expect("opens");
-        assert_eq!(frame.asset(), b"asset");
-        assert_eq!(frame.asset().as_ptr().addr() % 4, 0);
+        let assets: Vec<_> = frame.assets().collect();
+        assert_eq!(assets, [b"asset"]);
+        assert_eq!(assets[0].as_ptr().addr() % 4, 0);
         assert_eq!(frame.views().collect::<Vec<_>>(), [view; 2]);
     }
 
     #[test]
     fn too_large_for_a_machine_is_said() {
-        let asset = vec![0; 16 << 20];
-        let file = FrameFile::new(&asset, &[], LIGHT, Quality::default()).expect("fits a file");
+        let file = file(&vec![0; 16 << 20], &[]);
         let error = file.check_fits(&MACHINES[1]).expect_err("header and 16 MB");
         assert!(
             error.to_string().contains("m3 has room for 16777216"),

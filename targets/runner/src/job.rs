@@ -6,6 +6,9 @@ use std::path::{Path, PathBuf};
 use rhogrid::asset_file::AssetFile;
 use rhogrid::error::Error;
 use rhogrid_core::draw::{Light, Quality};
+use rhogrid_core::scene::Lamp;
+use rhogrid_core::shadow::Shadows;
+use rhogrid_frame::{Content, Placed, Settings};
 
 use crate::frame_file::FrameFile;
 use crate::host::{self, HostFrame};
@@ -32,6 +35,8 @@ pub struct Job {
     pub light: Light,
     /// The options.
     pub quality: Quality,
+    /// How shadows are drawn.
+    pub shadows: Shadows,
     /// Whether instructions are told apart by stage, too.
     pub by_stage: bool,
 }
@@ -48,7 +53,31 @@ impl Job {
             measured: view.camera(&asset),
         };
         let cameras: Vec<_> = self.views.iter().map(cameras).collect();
-        FrameFile::new(asset.bytes(), &cameras, self.light, self.quality)
+        let size = cameras.first().map(|view| view.measured);
+        let settings = Settings {
+            width: size.map_or(0, |camera| camera.width),
+            height: size.map_or(0, |camera| camera.height),
+            ambient: self.light.ambient,
+            quality: self.quality,
+            shadows: self.shadows,
+        };
+        FrameFile::new(&Content {
+            settings,
+            views: &cameras,
+            assets: &[asset.bytes()],
+            instances: &[Placed::ALONE],
+            lamps: &[lamp(&self.light)],
+        })
+    }
+}
+
+/// A light as a scene's lamp.
+fn lamp(light: &Light) -> Lamp {
+    Lamp {
+        towards: light.towards,
+        colour: [255; 3],
+        diffuse: light.diffuse,
+        casts: true,
     }
 }
 

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 
 use clap::error::ErrorKind;
 use clap::{CommandFactory, Parser};
-use rhogrid::cli::{Failure, QualityArgs, core_light, core_quality, float_light};
+use rhogrid::cli::{Failure, QualityArgs, core_light, core_quality, core_shadows};
 use rhogrid_targets::job::{Job, measure, print};
 use rhogrid_targets::machine::{self, Machine};
 use rhogrid_targets::views::{self, View};
@@ -73,9 +73,6 @@ impl Arguments {
         if extension.is_some_and(|extension| extension == "toml") {
             return Err("scenes are not supported yet; name an asset (FILE.rho)".to_owned());
         }
-        if float_light(&self.quality).casts {
-            return Err("shadows are not supported yet; leave --shadows off".to_owned());
-        }
         match self.quality.check() {
             Ok(()) => Ok(()),
             Err(Failure::Usage(what)) => Err(what),
@@ -95,6 +92,7 @@ impl Arguments {
             views,
             light: core_light(&self.quality),
             quality: core_quality(&self.quality),
+            shadows: core_shadows(&self.quality),
             by_stage: false,
         }
     }

@@ -38,6 +38,15 @@ fn exact(space: &LightSpace, point: [f64; 3]) -> [f64; 3] {
     })
 }
 
+/// How far tabulated w are off, relative to it.
+fn chord(near: f64, far: f64) -> f64 {
+    let offset = 65534.0 * near / (far - near);
+    match offset < 8000.0 {
+        true => 0.0,
+        false => (256.0 / offset).powi(2) / 8.0 + 2f64.powi(-22),
+    }
+}
+
 #[test]
 fn axes_are_orthonormal() {
     let mut rng = Rng::with_seed(51);
@@ -105,8 +114,10 @@ fn pixels_find_their_place() {
         let slopes = &mut std::vec![0; 4096];
         let identity = Inverse::of(&Placement::IDENTITY).expect("has volume");
         let normals = NormalMap::new(&Placement::IDENTITY, identity);
-        let view = (&camera, &projection);
+        let to_w = DepthToW::new(&projection);
+        let view = (&camera, &projection, &to_w);
         let receiver = Receiver::new(&space, (&[], slopes), &normals, view, [0; 2]);
+        let receiver = receiver.expect("all slopes");
         // The pixel that looks at the point, and what its own ray meets there.
         let (column, row) = (rng.u16(..320), rng.u16(..240));
         let (x, y) = (f64::from(column) - 159.5, f64::from(row) - 119.5);
@@ -125,7 +136,10 @@ fn pixels_find_their_place() {
         let (near, far) = (range.near.to_num::<f64>(), range.far.to_num::<f64>());
         let w = forms[2];
         let steps = 2.5 + 65534.0 * (near / w + near / far) * far / (far - near) * 2f64.powf(-18.8);
-        let w_error = w * (w * steps * (1.0 / near - 1.0 / far) / 65534.0 + 2f64.powf(-18.9));
+        let w_error = w
+            * (w * steps * (1.0 / near - 1.0 / far) / 65534.0
+                + 2f64.powf(-18.9)
+                + chord(near, far));
         let oblique = (1.0 + (x * x + y * y) / (focal * focal)).sqrt();
         for (axis, bits) in [(0, TEXEL_BITS), (1, TEXEL_BITS), (2, DEPTH_BITS)] {
             let got = f64::from(got[axis]) / 2f64.powi(bits);
