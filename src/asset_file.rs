@@ -33,15 +33,19 @@ impl AssetFile {
             length: bytes.len(),
             cube: Cube {
                 centre: DVec3::ZERO,
+                extents: DVec3::ONE,
                 half_side: 1.0,
                 radius: 1.0,
             },
             up: Up::Y,
         };
-        let radius = Grid::open(file.bytes())?.radius().to_num::<f64>();
+        let grid = Grid::open(file.bytes())?;
+        let radius = grid.radius().to_num::<f64>();
+        let extents = grid.extents().map(|extent| extent.to_num::<f64>());
         let [x, y, z, half_side] = [24, 32, 40, 48].map(|offset| double(bytes, offset));
         file.cube = Cube {
             centre: DVec3::new(x, y, z),
+            extents: DVec3::from(extents) * half_side,
             half_side,
             radius: radius * half_side,
         };

@@ -83,10 +83,13 @@ impl Placement {
     pub(crate) fn half_side(&self) -> Length {
         let [a, b, c] = self.axes.map(bits);
         let sum = |signs: [i64; 2]| [0, 1, 2].map(|at| a[at] + signs[0] * b[at] + signs[1] * c[at]);
-        let diagonals = [[1, 1], [1, -1], [-1, 1], [-1, -1]].map(|signs| square(sum(signs)) / 3);
+        let diagonals =
+            [[1, 1], [1, -1], [-1, 1], [-1, -1]].map(|signs| square(sum(signs)).div_ceil(3));
         let edges = [a, b, c].map(square);
         let longest = diagonals.into_iter().chain(edges).fold(0, u128::max);
-        Length::from_bits(longest.isqrt() as i64 + 1)
+        // Rounded up.
+        let root = longest.isqrt();
+        Length::from_bits((root + u128::from(root * root < longest)) as i64)
     }
 
     /// Radius of the placed grid around its origin, given that in model space.

@@ -140,8 +140,8 @@ fn row_of(
     }
 }
 
-/// Whether a pixel is far from any hole, as most are: of what lies before it
-/// nothing is nearer by the least gap.
+/// Whether a pixel that shows something is far from any hole, as most are: of
+/// what lies before it nothing is nearer by the least gap.
 #[inline(always)]
 fn is_far_from_holes(around: &Neighbourhood, gap: Gap) -> bool {
     let ahead = around[OWN - PITCH + 1];

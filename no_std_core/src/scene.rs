@@ -6,6 +6,7 @@
 //! normals, materials and shadows are an instance's own then.
 
 mod draw;
+mod order;
 
 pub use draw::{Memory, draw_scene};
 
@@ -69,3 +70,6 @@ pub struct Scene<'a> {
     /// How shadows are drawn.
     pub shadows: Shadows,
 }
+
+#[cfg(test)]
+mod tests;

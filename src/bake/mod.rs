@@ -83,6 +83,8 @@ impl Default for GridOptions {
 pub struct Cube {
     /// Middle of the geometry's box, source units, y up.
     pub centre: DVec3,
+    /// Half of the box's sides.
+    pub extents: DVec3,
     /// Half of the box's longest side.
     pub half_side: f64,
     /// Distance of the farthest vertex from the centre.
@@ -201,6 +203,7 @@ impl Cube {
         };
         Ok(Self {
             centre: bounds.centre(),
+            extents: (bounds.max - bounds.centre()).max(bounds.centre() - bounds.min),
             half_side: bounds.half_side(),
             radius: bounds.radius,
         })

@@ -7,7 +7,7 @@ use rhogrid_core::asset::{
     SECTION_MATERIALS, Shell, VERSION, checksum,
 };
 
-use super::{BakedGrid, BakedLevel, Masks, dictionary};
+use super::{BakedGrid, BakedLevel, Cube, Masks, dictionary};
 use crate::error::{Error, Place};
 use crate::geometry::Up;
 
@@ -118,7 +118,7 @@ fn header(grid: &BakedGrid, header_bytes: usize, sections: usize) -> Vec<u8> {
     bytes.extend([shell, up, u8::from(grid.two_sided), sections as u8]);
     let radius = (grid.cube.radius / grid.cube.half_side * f64::from(1 << 28)).ceil();
     bytes.extend((radius as u32).to_le_bytes());
-    bytes.extend([0; 4]);
+    bytes.extend(extents(&grid.cube).to_le_bytes());
     for value in grid
         .cube
         .centre
@@ -130,6 +130,14 @@ fn header(grid: &BakedGrid, header_bytes: usize, sections: usize) -> Vec<u8> {
     }
     bytes.resize(HEADER_BYTES, 0);
     bytes
+}
+
+/// In 1023rds of the half side, rounded up: x, y and z from bits 0, 10 and 20
+/// on.
+fn extents(cube: &Cube) -> u32 {
+    let parts = (cube.extents / cube.half_side * 1023.0).ceil();
+    let parts = parts.to_array().map(|part| part.clamp(0.0, 1023.0) as u32);
+    parts[0] | parts[1] << 10 | parts[2] << 20
 }
 
 fn materials(grid: &BakedGrid) -> Vec<u8> {

@@ -48,11 +48,12 @@ impl Grid<'_> {
         if flags > 1 {
             return Err(AssetError::Field { offset: 14 });
         }
-        for offset in [20, 56] {
-            if u32_at(bytes, offset) != Some(0) {
-                let offset = offset as u32;
-                return Err(AssetError::Field { offset });
-            }
+        let extents = u32_at(bytes, 20).unwrap_or(0);
+        if extents >> 30 != 0 {
+            return Err(AssetError::Field { offset: 20 });
+        }
+        if u32_at(bytes, 56) != Some(0) {
+            return Err(AssetError::Field { offset: 56 });
         }
         let radius = u32_at(bytes, 16).unwrap_or(0);
         // Between a touching sphere and the cube's corner, rounding included.
@@ -66,6 +67,10 @@ impl Grid<'_> {
             shell,
             two_sided: flags & 1 != 0,
             radius: Length::from_bits(i64::from(radius) << 4),
+            extents: match extents {
+                0 => [Length::ONE; 3],
+                _ => [0, 10, 20].map(|shift| extent(extents >> shift & 1023)),
+            },
             materials: [[255; 3]; MAX_MATERIALS],
             material_count: 1,
             dictionary: None,
@@ -90,4 +95,11 @@ impl Grid<'_> {
         self.material_count = count as u8;
         Ok(())
     }
+}
+
+/// A 1023rd part of the half side so many times, rounded up.
+fn extent(parts: u32) -> Length {
+    // 1 / 1023 = 2^-10 + 2^-20 + 2^-30 + ...
+    let parts = i64::from(parts);
+    Length::from_bits((parts << 22) + (parts << 12) + (parts << 2) + 4)
 }

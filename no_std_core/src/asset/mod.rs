@@ -21,7 +21,7 @@
 //! | 14 | 1 | flags: bit 0 two-sided |
 //! | 15 | 1 | number of sections |
 //! | 16 | 4 | radius around the centre, Q4.28, in half sides of the cube |
-//! | 20 | 4 | zero |
+//! | 20 | 4 | extents: how far the geometry reaches from the centre along x, y, z, in 1023rds of the half side, rounded up, from bits 0, 10 and 20 on; zero: the whole cube |
 //! | 24 | 24 | centre x, y, z in source units, y up (IEEE double; for tools) |
 //! | 48 | 8 | half side of the cube in source units (IEEE double; for tools) |
 //! | 56 | 4 | zero |
@@ -91,7 +91,7 @@ use section::{Section, Sections, u16_at};
 /// First bytes of every asset.
 pub const MAGIC: [u8; 4] = *b"RHOG";
 /// The format's version.
-pub const VERSION: u16 = 2;
+pub const VERSION: u16 = 3;
 /// Header bytes before the section table.
 pub const HEADER_BYTES: usize = 64;
 /// Bytes of one entry of the section table.
@@ -164,6 +164,7 @@ pub struct Grid<'a> {
     shell: Shell,
     two_sided: bool,
     radius: Length,
+    extents: [Length; 3],
     materials: [Rgb; MAX_MATERIALS],
     material_count: u8,
     dictionary: Option<Dictionary<'a>>,
@@ -247,6 +248,12 @@ impl<'a> Grid<'a> {
             self.codings.set(levels, coding);
         }
         Ok(())
+    }
+
+    /// How far the geometry that the grid was baked from reaches from the
+    /// centre along x, y and z.
+    pub fn extents(&self) -> [Length; 3] {
+        self.extents
     }
 
     /// Subdivision of each axis, 2 to 5.

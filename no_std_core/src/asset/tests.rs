@@ -150,10 +150,10 @@ fn wrong_headers_are_named() {
     }
     refused(&with_byte(&file, 0, b'r'), AssetError::Magic);
     refused(&with_byte(&file, 4, 1), AssetError::Version { version: 1 });
-    refused(&with_byte(&file, 4, 3), AssetError::Version { version: 3 });
+    refused(&with_byte(&file, 4, 4), AssetError::Version { version: 4 });
     refused(
         &with_byte(&file, 5, 1),
-        AssetError::Version { version: 258 },
+        AssetError::Version { version: 259 },
     );
     refused(&with_byte(&file, 8, 2), AssetError::Kind { kind: 2 });
     for rho in [0, 1, 6, 255] {
@@ -167,6 +167,10 @@ fn wrong_headers_are_named() {
             AssetError::Field { offset: start },
         );
     }
+    refused(
+        &with_byte(&file, 23, 0x40),
+        AssetError::Field { offset: 20 },
+    );
     let mut no_radius = file.clone();
     no_radius.header[16..20].fill(0);
     refused(&no_radius.bytes(), AssetError::Field { offset: 16 });
@@ -174,6 +178,25 @@ fn wrong_headers_are_named() {
         let mut bytes = file.bytes();
         bytes[offset] ^= 1;
         refused(&bytes, AssetError::Field { offset: 6 });
+    }
+}
+
+#[test]
+fn extents_are_parts_of_the_half_side() {
+    let extents = |word: u32| {
+        let mut file = small();
+        file.header[20..24].copy_from_slice(&word.to_le_bytes());
+        let bytes = aligned(&file.bytes());
+        let grid = Grid::open(&bytes).expect("valid");
+        grid.extents().map(|extent| extent.to_num::<f64>())
+    };
+    assert_eq!(extents(0), [1.0; 3]);
+    for (got, parts) in extents(1023 | 1 << 10 | 512 << 20)
+        .into_iter()
+        .zip([1023, 1, 512])
+    {
+        let want = f64::from(parts) / 1023.0;
+        assert!((want..want + 1e-8).contains(&got), "{got}, not {want}");
     }
 }
 

@@ -21,15 +21,15 @@ use crate::stats::Stats;
 const FRACTION: i32 = TEXEL_BITS - SCREEN_BITS;
 
 /// A cell in light space.
-struct Cell {
-    depth: u8,
-    index: usize,
-    first_child: usize,
-    centre: Point,
+pub(super) struct Cell {
+    pub depth: u8,
+    pub index: usize,
+    pub first_child: usize,
+    pub centre: Point,
 }
 
 /// A grid on its way into a map.
-struct Caster<'t, 'm, 'a, const CELLS: usize, const LEVELS: usize> {
+pub(super) struct Caster<'t, 'm, 'a, const CELLS: usize, const LEVELS: usize> {
     grid: &'t Grid<'a>,
     tables: &'t Tables<CELLS, LEVELS>,
     /// How cells face the light; `None` where all cast.
@@ -73,21 +73,30 @@ fn run<const RHO: u8, const CELLS: usize, const LEVELS: usize>(
     map: &mut Map<'_>,
     stats: &mut Stats,
 ) {
+    with_caster::<RHO, CELLS, LEVELS>(grid, forms, away, (map, stats), |caster| {
+        let first = caster.first::<RHO>();
+        caster.start::<RHO>(first);
+    });
+}
+
+/// Sets a grid's way into a map up.
+#[inline(always)]
+pub(super) fn with_caster<const RHO: u8, const CELLS: usize, const LEVELS: usize>(
+    grid: &Grid<'_>,
+    forms: &CastForms,
+    away: Option<[i32; 3]>,
+    (map, stats): (&mut Map<'_>, &mut Stats),
+    visit: impl FnOnce(&mut Caster<'_, '_, '_, CELLS, LEVELS>),
+) {
     let mut tables = Tables::EMPTY;
     tables.fill(RHO, forms.bottom, &forms.forms, 0);
-    let root = Cell {
-        depth: 0,
-        index: 0,
-        first_child: 0,
-        centre: tables.centre,
-    };
     let mut subcells = Subcells::blank();
     let steps = tables.extents(forms.bottom).half_edges.map(step);
     let fits = map.has_windows() && forms.side <= 2 && fits_window::<RHO>(&steps, forms.side);
     if fits {
         subcells.fill::<RHO>(&steps);
     }
-    let mut caster = Caster::<CELLS, LEVELS> {
+    visit(&mut Caster {
         grid,
         tables: &tables,
         normals: away.map(|away| Normals::new(away, 0)),
@@ -96,30 +105,44 @@ fn run<const RHO: u8, const CELLS: usize, const LEVELS: usize>(
         packed: fits.then_some(&subcells),
         map,
         stats,
-    };
-    caster.start::<RHO>(&root);
+    });
 }
 
 impl<const CELLS: usize, const LEVELS: usize> Caster<'_, '_, '_, CELLS, LEVELS> {
-    fn start<const RHO: u8>(&mut self, root: &Cell) {
+    pub fn root(&self) -> Cell {
+        Cell {
+            depth: 0,
+            index: 0,
+            first_child: 0,
+            centre: self.tables.centre,
+        }
+    }
+
+    /// The root's record and attribute, unless the root itself is drawn.
+    pub fn first<const RHO: u8>(&self) -> Option<(Record<RHO>, u16)> {
         let levels = self.grid.levels();
-        let (Some(top), Some(next)) = (levels.first(), levels.get(1)) else {
-            return self.square(root.centre);
-        };
-        let record = record_of::<RHO>(next, coding::<RHO>(self.grid, 1), 0);
-        if let (Some(record), Some(&attribute)) = (record, top.attributes.first()) {
-            match self.bottom {
-                0 => self.square(root.centre),
-                _ => self.node::<RHO>(root, &record, attribute),
-            }
+        let record = record_of::<RHO>(levels.get(1)?, coding::<RHO>(self.grid, 1), 0)?;
+        let attribute = *levels.first()?.attributes.first()?;
+        (self.bottom > 0).then_some((record, attribute))
+    }
+
+    /// Draws all of it, given what [`Caster::first`] gives.
+    pub fn start<const RHO: u8>(&mut self, first: Option<(Record<RHO>, u16)>) {
+        let root = self.root();
+        match first {
+            Some((record, attribute)) => self.node::<RHO>(&root, &record, attribute),
+            None => self.square(root.centre),
         }
     }
 
     fn node<const RHO: u8>(&mut self, cell: &Cell, record: &Record<RHO>, attribute: u16) {
-        self.stats.casters_visited += 1;
-        if self.is_away(record.flags, attribute) {
-            return;
+        if self.is_lit(record.flags, attribute) {
+            self.below(cell, record);
         }
+    }
+
+    /// Draws what lies below a cell that faces the light.
+    pub fn below<const RHO: u8>(&mut self, cell: &Cell, record: &Record<RHO>) {
         match (self.bottom - cell.depth, self.packed) {
             (1, None) => self.squares(cell.centre, record.drawn),
             (1, Some(subcells)) => self.block(cell.centre, record.drawn, subcells),
@@ -128,25 +151,44 @@ impl<const CELLS: usize, const LEVELS: usize> Caster<'_, '_, '_, CELLS, LEVELS> 
         }
     }
 
+    /// Whether some of a cell may face the light.
+    #[inline(always)]
+    pub fn is_lit(&mut self, flags: Flags, attribute: u16) -> bool {
+        self.stats.casters_visited += 1;
+        let normals = self.normals.as_ref();
+        normals.is_none_or(|normals| !normals.is_away(flags, attribute))
+    }
+
+    /// The centre of a cell's child, given its subcell.
+    #[inline(always)]
+    pub fn child_centre(&self, cell: &Cell, at: usize) -> Option<Point> {
+        let below = self.tables.below(cell.depth);
+        Some(cell.centre.plus(*below.displacements.get(at)?))
+    }
+
+    /// Whether the children of a cell have children that are not drawn.
+    pub fn goes_beyond(&self, cell: &Cell) -> bool {
+        self.bottom > cell.depth + 2
+    }
+
     fn children<const RHO: u8>(&mut self, cell: &Cell, record: &Record<RHO>) {
-        let (grid, below) = (self.grid, self.tables.below(cell.depth));
+        let grid = self.grid;
         let Some(level) = grid.levels().get(usize::from(cell.depth) + 1) else {
             return;
         };
         let visit = |spot: Spot, record: Record<RHO>| {
-            let (Some(&step), Some(&attribute)) = (
-                below.displacements.get(spot.at),
+            if let (Some(centre), Some(&attribute)) = (
+                self.child_centre(cell, spot.at),
                 level.attributes.get(spot.index),
-            ) else {
-                return;
-            };
-            let child = Cell {
-                depth: cell.depth + 1,
-                index: spot.index,
-                first_child: spot.first_child,
-                centre: cell.centre.plus(step),
-            };
-            self.node::<RHO>(&child, &record, attribute);
+            ) {
+                let child = Cell {
+                    depth: cell.depth + 1,
+                    index: spot.index,
+                    first_child: spot.first_child,
+                    centre,
+                };
+                self.node::<RHO>(&child, &record, attribute);
+            }
         };
         let place = (cell.depth, cell.index, cell.first_child);
         children::<RHO>(grid, place, record, visit);
@@ -170,22 +212,15 @@ impl<const CELLS: usize, const LEVELS: usize> Caster<'_, '_, '_, CELLS, LEVELS> 
         for mask in mask::in_file_order(record) {
             for (word, steps) in mask.words().zip(table.chunks(mask::cells(RHO))) {
                 for (bit, (&attribute, index)) in mask::bits(word).zip(children.by_ref()) {
-                    self.stats.casters_visited += 1;
                     let record = record_of::<RHO>(next, coding, index);
                     if let (Some(record), Some(&step)) = (record, steps.get(bit))
-                        && !self.is_away(record.flags, attribute)
+                        && self.is_lit(record.flags, attribute)
                     {
                         self.block(cell.centre.plus(step), record.drawn, subcells);
                     }
                 }
             }
         }
-    }
-
-    #[inline(always)]
-    fn is_away(&self, flags: Flags, attribute: u16) -> bool {
-        let normals = self.normals.as_ref();
-        normals.is_some_and(|normals| normals.is_away(flags, attribute))
     }
 
     /// Draws cells around the centre of their parent, by one addition each, in a

@@ -92,6 +92,21 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
         record: &Record<RHO>,
         mut visit: impl FnMut(&Cell, &Record<RHO>, u16),
     ) {
+        self.for_each_spot_nearest_first::<RHO>(cell, record, |spot, record| {
+            if let Some((child, attribute)) = self.child(cell, spot) {
+                visit(&child, record, attribute);
+            }
+        });
+    }
+
+    /// The same with their spots alone.
+    #[inline(always)]
+    pub(super) fn for_each_spot_nearest_first<const RHO: u8>(
+        &self,
+        cell: &Cell,
+        record: &Record<RHO>,
+        mut visit: impl FnMut(&Spot, &Record<RHO>),
+    ) {
         let Some(next) = self.level(cell.depth + 2) else {
             return;
         };
@@ -116,9 +131,8 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
                     if let Some(spot) = spots.get(at)
                         && spot.index != Spot::NONE.index
                         && let Some(record) = record_of::<RHO>(next, coding, spot.index)
-                        && let Some((child, attribute)) = self.child(cell, spot)
                     {
-                        visit(&child, &record, attribute);
+                        visit(spot, &record);
                     }
                 }
             }

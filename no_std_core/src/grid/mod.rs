@@ -8,6 +8,7 @@
 
 mod affine;
 mod blocks;
+mod both;
 mod cast;
 mod children;
 mod clip;
@@ -26,5 +27,6 @@ mod subtree;
 mod tables;
 mod traverse;
 
+pub(crate) use both::traverse_and_cast;
 pub(crate) use cast::cast;
 pub(crate) use traverse::traverse;

@@ -24,6 +24,7 @@ use crate::numbers::Length;
 use crate::plan::Plan;
 use crate::projection::Projection;
 use crate::stats::Stats;
+use crate::target::Rect;
 
 /// Everything that a strip's traversal reads.
 pub(super) struct Frame<'a, const CELLS: usize, const LEVELS: usize> {
@@ -88,17 +89,39 @@ fn run<const RHO: u8, const CELLS: usize, const LEVELS: usize>(
     canvas: &mut Canvas<'_>,
     stats: &mut Stats,
 ) {
+    let view = (eye, projection, plan);
+    with_frame::<RHO, CELLS, LEVELS>(grid, view, canvas.strip, |frame, root| {
+        let mut output = Output {
+            canvas,
+            stats,
+            queue: Queue {
+                places: &mut [0; CELLS],
+                blocks: &mut [Block::NONE; CELLS],
+            },
+        };
+        frame.start::<RHO>(root, &mut output);
+    });
+}
+
+/// Sets a strip's traversal up.
+#[inline(always)]
+pub(super) fn with_frame<'a, const RHO: u8, const CELLS: usize, const LEVELS: usize>(
+    grid: &'a Grid<'a>,
+    (eye, projection, plan): ([Length; 3], &Projection, &Plan),
+    strip: Rect,
+    visit: impl FnOnce(&Frame<'_, CELLS, LEVELS>, &Cell),
+) {
     let eye_space = EyeSpace::new(eye);
     let mut tables = Tables::EMPTY;
     tables.fill(RHO, plan.depth, &projection.forms, eye_space.unit);
-    let clip = Clip::new(projection, &tables, plan.depth, canvas.strip);
+    let clip = Clip::new(projection, &tables, plan.depth, strip);
     let root = Cell {
         depth: 0,
         index: 0,
         first_child: 0,
         centre: tables.centre,
         view: eye_space.centre,
-        inside: projection.holds_cube(canvas.strip),
+        inside: projection.holds_cube(strip),
     };
     let frame = Frame::<CELLS, LEVELS> {
         grid,
@@ -107,19 +130,11 @@ fn run<const RHO: u8, const CELLS: usize, const LEVELS: usize>(
         tables: &tables,
         clip: &clip,
     };
-    let mut output = Output {
-        canvas,
-        stats,
-        queue: Queue {
-            places: &mut [0; CELLS],
-            blocks: &mut [Block::NONE; CELLS],
-        },
-    };
-    frame.start::<RHO>(&root, &mut output);
+    visit(&frame, &root);
 }
 
 impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
-    fn start<const RHO: u8>(&self, root: &Cell, output: &mut Output<'_, '_, 'a>) {
+    pub(super) fn start<const RHO: u8>(&self, root: &Cell, output: &mut Output<'_, '_, 'a>) {
         let levels = self.grid.levels();
         let (Some(top), next) = (levels.first(), levels.get(1)) else {
             return;
@@ -146,36 +161,50 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
         attribute: u16,
         output: &mut Output<'_, '_, 'a>,
     ) {
-        output.stats.nodes_visited += 1;
+        if let Some((cell, normals)) = self.seen(cell, record, attribute, output.stats) {
+            self.visit_below(&cell, record, attribute, &normals, output);
+        }
+    }
+
+    /// A cell, with what is known of its place, and how its children face,
+    /// unless all of it faces away or lies outside.
+    #[inline(always)]
+    pub(super) fn seen<const RHO: u8>(
+        &self,
+        cell: &Cell,
+        record: &Record<RHO>,
+        attribute: u16,
+        stats: &mut Stats,
+    ) -> Option<(Cell, Normals)> {
+        stats.nodes_visited += 1;
         let normals = Normals::new(cell.view, self.tables.extents(cell.depth).eye_radius);
         if self.plan.faces {
-            output.stats.facing_tests += 1;
+            stats.facing_tests += 1;
             if normals.is_away(record.flags, attribute) {
-                output.stats.nodes_back_facing += 1;
-                return;
+                stats.nodes_back_facing += 1;
+                return None;
             }
         }
         let side = if cell.inside {
             Side::Inside
         } else {
-            output.stats.side_tests += 1;
+            stats.side_tests += 1;
             self.side(cell)
         };
         if side == Side::Outside {
-            output.stats.nodes_outside += 1;
-            return;
+            stats.nodes_outside += 1;
+            return None;
         }
         let cell = Cell {
             inside: side == Side::Inside,
             ..*cell
         };
-        self.descend::<RHO>(&cell, record, attribute, &normals, output);
+        Some((cell, normals))
     }
 
-    /// Draws what lies below a cell: as packed subtrees where the plan allows
-    /// that.
+    /// Draws or visits the children of a cell that is seen.
     #[inline(always)]
-    fn descend<const RHO: u8>(
+    pub(super) fn visit_below<const RHO: u8>(
         &self,
         cell: &Cell,
         record: &Record<RHO>,
@@ -183,6 +212,24 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
         normals: &Normals,
         output: &mut Output<'_, '_, 'a>,
     ) {
+        if !self.draws_below::<RHO>(cell, record, attribute, normals, output) {
+            self.for_each_child_nearest_first::<RHO>(cell, record, |child, record, attribute| {
+                self.node::<RHO>(child, record, attribute, output);
+            });
+        }
+    }
+
+    /// Draws what lies below a cell, as packed subtrees where the plan allows
+    /// that. `false`, with nothing done, where its children are to be visited.
+    #[inline(always)]
+    pub(super) fn draws_below<const RHO: u8>(
+        &self,
+        cell: &Cell,
+        record: &Record<RHO>,
+        attribute: u16,
+        normals: &Normals,
+        output: &mut Output<'_, '_, 'a>,
+    ) -> bool {
         let w = cell.centre.w;
         let stops = |levels| w >= self.plan.stop(cell.depth + levels);
         let packs =
@@ -196,18 +243,13 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
             if !is_drawn {
                 self.leaves::<RHO>(cell, record, attribute, output);
             }
-            return;
+            return true;
         }
-        let is_drawn = if stops(2) {
+        if stops(2) {
             packs(2) && self.packed::<RHO, 2>(cell, record, attribute, normals, output)
                 || shares(1) && self.siblings::<RHO, 1>(cell, record, normals, output)
         } else {
             stops(3) && shares(2) && self.siblings::<RHO, 2>(cell, record, normals, output)
-        };
-        if !is_drawn {
-            self.for_each_child_nearest_first::<RHO>(cell, record, |child, record, attribute| {
-                self.node::<RHO>(child, record, attribute, output);
-            });
         }
     }
 

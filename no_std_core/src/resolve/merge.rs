@@ -126,7 +126,7 @@ impl Line<'_> {
 #[inline(always)]
 fn shown(around: &Neighbourhood, gap: Gap) -> (Option<[u32; 2]>, u32) {
     let own = around[OWN];
-    if is_far_from_holes(around, gap) {
+    if own != 0 && is_far_from_holes(around, gap) {
         return (None, own);
     }
     match hole(around, gap) {

@@ -1,20 +1,19 @@
 //! One frame of a scene.
 
-use super::{Instance, Lamp, MAX_LAMPS, Scene};
+use super::{Instance, MAX_LAMPS, Scene, order};
 use crate::camera::Camera;
 use crate::canvas::Canvas;
 use crate::draw::Quality;
-use crate::grid::{cast, traverse};
-use crate::normal::CODES;
-use crate::numbers::{Length, SplatPx, shift_round};
+use crate::grid::{cast, traverse, traverse_and_cast};
+use crate::numbers::{Length, SplatPx, Unit, shift_round};
 use crate::placement::{Inverse, NormalMap};
 use crate::plan::Plan;
 use crate::projection::{DepthToW, Projection, Sight};
 use crate::resolve::{Shadowed, merge};
 use crate::shade::Shader;
-use crate::shadow::{CastForms, LightSpace, Map, Method, Receiver, Shadows, Sphere, bias, edge};
+use crate::shadow::{CastForms, LightSpace, Map, Method, Receiver, Sphere, bias, edge};
 use crate::stats::Stats;
-use crate::target::Layers;
+use crate::target::{Layers, blank};
 
 /// Memory that a scene's frame needs beside its target.
 pub struct Memory<'a> {
@@ -36,42 +35,81 @@ pub fn draw_scene(
     target: &mut Layers<'_>,
 ) -> Stats {
     let mut stats = Stats::default();
-    let mut maps = Maps::cast(scene, memory.shadows, &mut stats);
-    let sights = || {
-        let placed = scene.instances.iter();
-        placed.filter_map(|instance| Some((instance, instance.placement.sight(camera)?)))
+    let mut maps = Maps::new(scene, memory.shadows);
+    let order = one_pass_order(scene, &maps, target);
+    if order.is_none() {
+        maps.cast(scene, &mut stats);
+    }
+    let sight = |instance: &Instance<'_>| instance.placement.sight(camera);
+    let range = match scene.instances {
+        [_] => None,
+        _ => Some(range(scene.instances.iter().filter_map(sight))),
     };
-    let range = sights().fold([Length::MAX, Length::ONE], |[near, far], (_, sight)| {
-        let [nearest, farthest] = sight.range();
-        [near.min(nearest), far.max(farthest)]
-    });
     target.clear();
-    for (instance, sight) in sights() {
-        let frame = InstanceFrame {
-            instance,
-            camera,
-            quality,
-            projection: Projection::of(camera, &sight, Some(range)),
-            sight,
-        };
-        frame.draw(scene, memory.shades, &mut maps, target, &mut stats);
+    for place in 0..scene.instances.len() {
+        let index = order.as_ref().and_then(|order| order.get(place));
+        let instance = scene.instances.get(*index.unwrap_or(&place));
+        if let Some(instance) = instance
+            && let Some(sight) = sight(instance)
+            && let Some(inverse) = Inverse::of(&instance.placement)
+        {
+            let frame = InstanceFrame {
+                scene,
+                instance,
+                camera,
+                quality,
+                projection: Projection::of(camera, &sight, range),
+                normals: NormalMap::new(&instance.placement, inverse),
+                sight,
+                casts: order.is_some(),
+            };
+            frame.draw(memory.shades, &mut maps, target, &mut stats);
+        }
     }
     stats
 }
 
+/// The w between which depths resolve, so that those of all instances compare.
+fn range(sights: impl Iterator<Item = Sight>) -> [Length; 2] {
+    sights.fold([Length::MAX, Length::DELTA], |[near, far], sight| {
+        let [nearest, farthest] = sight.range();
+        [near.min(nearest), far.max(farthest)]
+    })
+}
+
+/// The order of instances in which one pass serves: where one lamp casts, and
+/// the picture is one strip. `None` where maps are to be drawn before.
+fn one_pass_order(
+    scene: &Scene<'_>,
+    maps: &Maps<'_>,
+    target: &Layers<'_>,
+) -> Option<[usize; order::MOST]> {
+    let is_asked_for = scene.shadows.method == Method::OnePass;
+    let mut spaces = maps.maps.iter().flatten().map(|map| map.space);
+    match (spaces.next(), spaces.next()) {
+        (Some(space), None) if is_asked_for && target.strips().nth(1).is_none() => {
+            order::along(&space, scene.instances)
+        }
+        _ => None,
+    }
+}
+
 /// One instance in one frame.
 struct InstanceFrame<'f> {
+    scene: &'f Scene<'f>,
     instance: &'f Instance<'f>,
     camera: &'f Camera,
     quality: &'f Quality,
     projection: Projection,
+    normals: NormalMap,
     sight: Sight,
+    /// Whether it is cast while it is drawn.
+    casts: bool,
 }
 
 impl InstanceFrame<'_> {
     fn draw(
         &self,
-        scene: &Scene<'_>,
         shades: &mut [u16],
         maps: &mut Maps<'_>,
         target: &mut Layers<'_>,
@@ -79,38 +117,46 @@ impl InstanceFrame<'_> {
     ) {
         let grid = self.instance.grid;
         let plan = Plan::with(grid, self.camera, self.quality, &self.projection);
-        if plan.part.pixels() == 0 {
-            return;
-        }
-        let Some(inverse) = Inverse::of(&self.instance.placement) else {
-            return;
-        };
-        let normals = NormalMap::new(&self.instance.placement, inverse);
         let shades = if plan.tabulates { shades } else { &mut [] };
-        let shader = Shader::placed(&scene.lighting, &normals, self.instance.colours(), shades);
-        let cell = |space: &LightSpace| self.cell(space, &plan);
+        let colours = self.instance.colours();
+        let shader = Shader::placed(&self.scene.lighting, &self.normals, colours, shades);
         let to_w = DepthToW::new(&self.projection);
-        let receivers = maps.receivers((self, &to_w), &normals, &scene.shadows, cell);
         for strip in target.strips() {
-            let part = strip.intersection(plan.part);
-            if part.pixels() == 0 {
-                continue;
-            }
             let (canvas, picture) = target.parts();
-            let mut canvas = Canvas::new(canvas, part);
-            traverse(
-                grid,
-                self.sight.eye,
-                &self.projection,
-                &plan,
-                &mut canvas,
-                stats,
-            );
+            let mut canvas = Canvas::new(canvas, strip.intersection(plan.part));
+            self.traverse(&plan, maps, &mut canvas, stats);
             let shadowed = Shadowed {
                 shader: &shader,
-                receivers: &receivers,
+                receivers: &maps.receivers(self, &to_w, |space| self.cell(space, &plan)),
             };
             merge(&canvas, plan.repair, &shadowed, picture);
+        }
+    }
+
+    fn traverse(
+        &self,
+        plan: &Plan,
+        maps: &mut Maps<'_>,
+        canvas: &mut Canvas<'_>,
+        stats: &mut Stats,
+    ) {
+        let grid = self.instance.grid;
+        let is_seen = canvas.strip.pixels() > 0;
+        if self.casts {
+            for map in maps.maps.iter_mut().flatten() {
+                let (forms, away) = map.forms(self.scene, self.instance, &self.normals);
+                let mut texels = map.texels();
+                if is_seen {
+                    let view = (self.sight.eye, &self.projection, plan);
+                    let light = (&forms, away, &mut texels);
+                    traverse_and_cast(grid, view, light, canvas, stats);
+                } else {
+                    cast(grid, &forms, away, &mut texels, stats);
+                }
+            }
+        } else if is_seen {
+            let eye = self.sight.eye;
+            traverse(grid, eye, &self.projection, plan, canvas, stats);
         }
     }
 
@@ -134,19 +180,22 @@ struct Maps<'m> {
 }
 
 struct LampMap<'m> {
+    towards: [Unit; 3],
     space: LightSpace,
-    depths: &'m [u16],
+    depths: &'m mut [u16],
     slopes: &'m mut [u16],
 }
 
 impl<'m> Maps<'m> {
-    /// Draws the maps.
-    fn cast(scene: &Scene<'_>, memory: &'m mut [u16], stats: &mut Stats) -> Self {
+    /// Clear maps.
+    fn new(scene: &Scene<'_>, memory: &'m mut [u16]) -> Self {
         let mut maps = [const { None }; MAX_LAMPS];
         if scene.shadows.method == Method::Off {
             return Self { maps };
         }
         let sphere = Sphere::around(scene.instances);
+        let size = scene.shadows.size;
+        let texels = usize::from(size) * usize::from(size);
         let mut rest = memory;
         for (map, lamp) in maps.iter_mut().zip(scene.lighting.lamps) {
             if !lamp.casts {
@@ -156,59 +205,71 @@ impl<'m> Maps<'m> {
                 break;
             };
             rest = others;
-            *map = LampMap::cast(scene, lamp, sphere, own, stats);
+            let Some((depths, slopes)) = own.split_at_mut_checked(texels) else {
+                break;
+            };
+            blank(depths);
+            *map = Some(LampMap {
+                towards: lamp.towards,
+                space: LightSpace::new(lamp.towards, sphere, size),
+                depths,
+                slopes,
+            });
         }
         Self { maps }
     }
 
-    /// What pixels of an instance read in them.
+    /// Draws all of them.
+    fn cast(&mut self, scene: &Scene<'_>, stats: &mut Stats) {
+        for map in self.maps.iter_mut().flatten() {
+            for instance in scene.instances {
+                if let Some(inverse) = Inverse::of(&instance.placement) {
+                    let normals = NormalMap::new(&instance.placement, inverse);
+                    let (forms, away) = map.forms(scene, instance, &normals);
+                    cast(instance.grid, &forms, away, &mut map.texels(), stats);
+                }
+            }
+        }
+    }
+
+    /// What pixels of an instance read in them, `cell` being the edge of what is
+    /// drawn of it.
     fn receivers<'r>(
         &'r mut self,
-        (frame, to_w): (&InstanceFrame<'_>, &'r DepthToW),
-        normals: &NormalMap,
-        shadows: &Shadows,
+        frame: &InstanceFrame<'_>,
+        to_w: &'r DepthToW,
         cell: impl Fn(&LightSpace) -> u64,
     ) -> [Option<Receiver<'r>>; MAX_LAMPS] {
         let view = (frame.camera, &frame.projection, to_w);
+        let shadows = &frame.scene.shadows;
         self.maps.each_mut().map(|map| {
             let map = map.as_mut()?;
-            let space = map.space;
-            let instance = frame.instance;
-            let cast = CastForms::new(&space, instance.grid, &instance.placement, shadows.splat);
-            let bias = bias(&space, &cast, cell(&space), shadows.bias);
-            let memory = (map.depths, &mut *map.slopes);
-            Receiver::new(&space, memory, normals, view, bias)
+            let (forms, _) = map.forms(frame.scene, frame.instance, &frame.normals);
+            let bias = bias(&map.space, &forms, cell(&map.space), shadows.bias);
+            let memory = (&*map.depths, &mut *map.slopes);
+            Receiver::new(&map.space, memory, &frame.normals, view, bias)
         })
     }
 }
 
-impl<'m> LampMap<'m> {
-    /// Draws a lamp's map.
-    fn cast(
+impl LampMap<'_> {
+    fn texels(&mut self) -> Map<'_> {
+        Map::new(self.depths, self.space.size)
+    }
+
+    /// How an instance reaches the map, and what leads away from the light, if
+    /// that counts.
+    fn forms(
+        &self,
         scene: &Scene<'_>,
-        lamp: &Lamp,
-        sphere: Sphere,
-        memory: &'m mut [u16],
-        stats: &mut Stats,
-    ) -> Option<Self> {
-        let Shadows { size, splat, .. } = scene.shadows;
-        let space = LightSpace::new(lamp.towards, sphere, size);
-        let texels = usize::from(size) * usize::from(size);
-        let (depths, slopes) = memory.split_at_mut_checked(texels)?;
-        let mut map = Map::new(depths, size);
-        for instance in scene.instances {
-            let Some(inverse) = Inverse::of(&instance.placement) else {
-                continue;
-            };
-            let away = NormalMap::new(&instance.placement, inverse).away(lamp.towards);
-            let away = (!instance.grid.two_sided()).then_some(away);
-            let forms = CastForms::new(&space, instance.grid, &instance.placement, splat);
-            cast(instance.grid, &forms, away, &mut map, stats);
-        }
-        Some(Self {
-            space,
-            depths,
-            slopes: slopes.get_mut(..CODES / 2)?,
-        })
+        instance: &Instance<'_>,
+        normals: &NormalMap,
+    ) -> (CastForms, Option<[i32; 3]>) {
+        let Instance {
+            grid, placement, ..
+        } = instance;
+        let forms = CastForms::new(&self.space, grid, placement, scene.shadows.splat);
+        let away = (!grid.two_sided()).then(|| normals.away(self.towards));
+        (forms, away)
     }
 }

@@ -5,7 +5,6 @@ use crate::asset::Grid;
 use crate::numbers::{Length, SplatPx};
 use crate::placement::Placement;
 use crate::projection::Form;
-use crate::target::blank;
 
 /// Squares of n texels lie side by side without gaps for edges of up to n - 1
 /// and so much more, texels Q16.
@@ -18,9 +17,8 @@ pub(crate) struct Map<'a> {
 }
 
 impl<'a> Map<'a> {
-    /// A clear map of so many texels along a side.
+    /// Of so many texels along a side.
     pub fn new(depths: &'a mut [u16], size: u16) -> Self {
-        blank(depths);
         Self {
             depths,
             size: usize::from(size),

@@ -19,7 +19,7 @@ fn wrong_usage_is_2_and_says_what_is_right() {
         (&["m3", "a.rho", "--splat", "x"], "--splat"),
         (&["m3", "a.rho", "--light", "1,2"], "X,Y,Z"),
         (&["m3", "a.rho", "--light", "0,0,0"], "a direction"),
-        ("not supported yet",),
+        (&["m3", "a.rho", "--shadow-size", "8"], "--shadow-size"),
     ] {
         let output = run(arguments);
         let stderr = String::from_utf8_lossy(&output.stderr);
