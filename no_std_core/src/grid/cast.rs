@@ -312,3 +312,6 @@ fn fits_window<const RHO: u8>(steps: &[Step; 3], side: usize) -> bool {
     let limit = ((WINDOW / 2 - 1) << SCREEN_BITS) - (1 << SCREEN_BITS) / 4;
     reach(|step| step.x) <= limit && reach(|step| step.y) <= limit
 }
+
+#[cfg(test)]
+mod tests;

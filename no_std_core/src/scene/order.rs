@@ -151,3 +151,6 @@ fn cross(a: Vector, b: Vector) -> Vector {
         (a[0] * b[1] - a[1] * b[0]) >> 14,
     ]
 }
+
+#[cfg(test)]
+mod tests;
