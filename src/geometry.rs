@@ -164,6 +164,20 @@ impl Geometry {
         self
     }
 
+    /// What the box is around: the vertices that triangles use, or the points.
+    pub fn points(&self) -> Vec<DVec3> {
+        match self {
+            Self::Mesh(mesh) => {
+                let corners = mesh
+                    .triangles
+                    .iter()
+                    .flat_map(|triangle| triangle.positions);
+                corners.map(|at| mesh.positions[at as usize]).collect()
+            }
+            Self::Cloud(cloud) => cloud.points.iter().map(|point| point.position).collect(),
+        }
+    }
+
     /// Bounds of everything that is referenced.
     pub fn bounds(&self) -> Option<Bounds> {
         match self {

@@ -17,4 +17,5 @@ pub mod output;
 pub mod picture;
 pub mod reference;
 pub mod report;
+pub mod scene;
 pub mod view;

@@ -5,7 +5,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use rhogrid::asset_file::AssetFile;
-use rhogrid::cli::{Model, core_light, core_quality, core_shadows, draw_frame, float_light};
+use rhogrid::cli::{
+    Model, ShadowChoice, core_light, core_quality, core_shadows, draw_frame, float_light,
+};
 use rhogrid::error::Error;
 use rhogrid_core::asset::node::occupied;
 use rhogrid_core::draw::{Light, Quality};
@@ -129,10 +131,11 @@ impl Bench {
         let job = Job {
             machine: self.machine,
             file,
+            models: None,
             views: self.views.clone(),
             light: core_light(&quality),
             quality: core_quality(&quality),
-            shadows: core_shadows(&quality),
+            shadows: core_shadows(&quality, ShadowChoice::Off),
             by_stage: true,
         };
         Ok((asset, job))
@@ -140,7 +143,9 @@ impl Bench {
 }
 
 fn draw(asset: &AssetFile, view: &View, light: &Light, quality: &Quality) -> Drawn {
-    let frame = draw_frame(&asset.grid(), &view.camera(asset), light, quality, 1);
+    let grid = asset.grid();
+    let camera = view.camera(grid.radius(), &asset.cube());
+    let frame = draw_frame(&grid, &camera, light, quality, 1);
     Drawn {
         hash: frame.hash(),
         samples: u64::from(frame.stats.samples_drawn),

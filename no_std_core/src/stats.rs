@@ -21,6 +21,9 @@ pub struct Stats {
     /// Those of them that were projected one by one and drawn as splats of
     /// their own size.
     pub splats_drawn: u32,
+    /// Traversals for shadow maps alone: one for each map, none where they are
+    /// drawn with the picture.
+    pub shadow_passes: u32,
     /// Occupancy masks read for shadow maps.
     pub casters_visited: u32,
     /// Squares drawn into shadow maps.

@@ -187,6 +187,17 @@ fn depth_of(options: &GridOptions) -> Result<u8, Error> {
 }
 
 impl Cube {
+    /// The corners of the geometry's box.
+    pub fn corners(&self) -> Vec<DVec3> {
+        let signs = (0..8).map(|corner| {
+            let sign = |axis: usize| f64::from(corner >> axis & 1) * 2.0 - 1.0;
+            DVec3::new(sign(0), sign(1), sign(2))
+        });
+        signs
+            .map(|sign| self.centre + sign * self.extents)
+            .collect()
+    }
+
     /// The tight centred bounding cube of geometry.
     ///
     /// # Errors

@@ -35,8 +35,8 @@ pub fn run(args: &BakeArgs) -> Result<(), Failure> {
     args.source.check()?;
     check_distinct(&args.input, &args.output)?;
     let mut source = args.source.clone();
-    let geometry = load_geometry(&args.input, &source)?;
-    let mut asset = bake_asset(&args.input, &geometry, &source)?;
+    let geometry = load_geometry(&args.input, source.grid_options().up)?;
+    let mut asset = bake_asset(&args.input, &geometry, &source.grid_options())?;
     while let Some(limit) = args
         .max_bytes
         .filter(|&limit| asset.bytes().len() as u64 > limit)
@@ -49,7 +49,7 @@ pub fn run(args: &BakeArgs) -> Result<(), Failure> {
             return Err(Error::file(&args.input, what, remedy).into());
         }
         source.level = Some(level - 1);
-        asset = bake_asset(&args.input, &geometry, &source)?;
+        asset = bake_asset(&args.input, &geometry, &source.grid_options())?;
     }
     write_whole(&args.output, |file| file.write_all(asset.bytes()))?;
     report(args, &asset)

@@ -30,7 +30,7 @@ pub fn run() -> Result<(), Failure> {
     let defaults = Defaults::parse_from(["rhogrid", "--yaw", "30", "--distance", "2.1"]);
     let model = Model::open(Path::new(DEMO), &defaults.source)?;
     let (grid, cube) = (model.asset.grid(), model.asset.cube());
-    let camera = core_camera(&defaults.view, &grid, &cube);
+    let camera = core_camera(&defaults.view, grid.radius(), &cube);
     let (light, quality) = (
         core_light(&defaults.quality),
         core_quality(&defaults.quality),

@@ -22,9 +22,10 @@ const AMBIENT: f64 = 0.2;
 /// Diffuse weight of the default light.
 const DIFFUSE: f64 = 0.8;
 
-/// The core's camera for a model: angles and distance go through the core's
-/// own orbit, an eye position is moved into the cube.
-pub fn core_camera(view: &ViewArgs, grid: &Grid<'_>, cube: &Cube) -> Camera {
+/// The core's camera for a model or a scene of a radius, in half sides of its
+/// cube: angles and distance go through the core's own orbit, an eye position is
+/// moved into the cube.
+pub fn core_camera(view: &ViewArgs, radius: Length, cube: &Cube) -> Camera {
     let focal_px =
         FocalPx::saturating_from_num(View::focal_px(view.fov, u32::from(view.size.height)));
     let (width, height) = (view.size.width, view.size.height);
@@ -33,9 +34,7 @@ pub fn core_camera(view: &ViewArgs, grid: &Grid<'_>, cube: &Cube) -> Camera {
             let orbit = Orbit {
                 yaw: turns(view.yaw),
                 pitch: turns(view.pitch),
-                distance: Length::saturating_from_num(
-                    view.distance * grid.radius().to_num::<f64>(),
-                ),
+                distance: Length::saturating_from_num(view.distance * radius.to_num::<f64>()),
             };
             Camera::orbit(&orbit, focal_px, width, height)
         }
@@ -95,7 +94,7 @@ fn turns(degrees: f64) -> Turns {
 /// The core's light.
 pub fn core_light(quality: &QualityArgs) -> CoreLight {
     CoreLight {
-        towards: quality.light.0.normalize().to_array().map(Unit::from_num),
+        towards: quality.towards().normalize().to_array().map(Unit::from_num),
         ambient: Weight::from_num(AMBIENT),
         diffuse: Weight::from_num(DIFFUSE),
     }
@@ -104,10 +103,12 @@ pub fn core_light(quality: &QualityArgs) -> CoreLight {
 /// The reference's light.
 pub fn float_light(quality: &QualityArgs) -> Light {
     Light {
-        towards: quality.light.0.normalize(),
+        towards: quality.towards().normalize(),
         ambient: AMBIENT,
         diffuse: DIFFUSE,
-        casts: quality.shadows != ShadowChoice::Off,
+        casts: quality
+            .shadows
+            .is_some_and(|choice| choice != ShadowChoice::Off),
     }
 }
 
@@ -121,10 +122,10 @@ pub fn core_quality(quality: &QualityArgs) -> Quality {
     }
 }
 
-/// The core's shadows.
-pub fn core_shadows(quality: &QualityArgs) -> Shadows {
+/// The core's shadows, of the kind that is asked for or of another.
+pub fn core_shadows(quality: &QualityArgs, unless_said: ShadowChoice) -> Shadows {
     Shadows {
-        method: match quality.shadows {
+        method: match quality.shadows.unwrap_or(unless_said) {
             ShadowChoice::Off => Method::Off,
             ShadowChoice::TwoPass => Method::TwoPass,
             ShadowChoice::OnePass => Method::OnePass,

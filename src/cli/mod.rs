@@ -9,6 +9,7 @@ mod info;
 mod model;
 mod render;
 mod report;
+mod scene;
 
 use std::io::Write;
 use std::process::ExitCode;
@@ -17,13 +18,14 @@ use clap::{Parser, Subcommand};
 
 use crate::error::{Error, Place};
 
-pub use args::{QualityArgs, Size, SourceArgs, Triple, ViewArgs};
+pub use args::{QualityArgs, ShadowChoice, Size, SourceArgs, Triple, ViewArgs};
 pub use frame::{
     Frame, core_camera, core_light, core_quality, core_shadows, draw_frame, draw_placed,
     draw_shadowed, float_light, float_view,
 };
 pub use info::Description;
 pub use model::Model;
+pub use scene::{ambient, grids, instances, is_scene, lamps, load_scene, placements};
 
 /// Bakes, previews and measures 3D assets for devices without FPU, GPU or
 /// heap. Without a command it runs the demo.

@@ -8,9 +8,9 @@ use indicatif::{ProgressBar, ProgressStyle};
 use super::Failure;
 use super::args::SourceArgs;
 use crate::asset_file::AssetFile;
-use crate::bake::{self, Progress, writer};
+use crate::bake::{self, GridOptions, Progress, writer};
 use crate::error::Error;
-use crate::geometry::Geometry;
+use crate::geometry::{Geometry, Up};
 use crate::import;
 
 /// Names the built-in scene where a file is asked for.
@@ -38,8 +38,8 @@ impl Model {
                 geometry: None,
             });
         }
-        let geometry = load_geometry(input, source)?;
-        let asset = bake_asset(input, &geometry, source)?;
+        let geometry = load_geometry(input, source.grid_options().up)?;
+        let asset = bake_asset(input, &geometry, &source.grid_options())?;
         Ok(Self {
             asset,
             geometry: Some(geometry),
@@ -62,43 +62,37 @@ pub fn is_asset(input: &Path) -> bool {
 }
 
 /// Loads a mesh or cloud, or makes the built-in scene, y up.
-pub fn load_geometry(input: &Path, source: &SourceArgs) -> Result<Geometry, Error> {
+pub fn load_geometry(input: &Path, up: Up) -> Result<Geometry, Error> {
     if input == Path::new(DEMO) {
-        return Ok(Geometry::Mesh(import::procedural::demo()).turned(source.grid_options().up));
+        return Ok(Geometry::Mesh(import::procedural::demo()).turned(up));
     }
     let imported = import::load(input)?;
     for note in &imported.notes {
         eprintln!("{}: note: {note}", input.display());
     }
-    Ok(imported.geometry.turned(source.grid_options().up))
+    Ok(imported.geometry.turned(up))
 }
 
 /// Bakes geometry, with a progress bar where stderr is a terminal.
 pub fn bake_asset(
     input: &Path,
     geometry: &Geometry,
-    source: &SourceArgs,
-) -> Result<AssetFile, Failure> {
+    options: &GridOptions,
+) -> Result<AssetFile, Error> {
     let bar = progress_bar();
-    let options = source.grid_options();
-    let baked = bake::grid(geometry, &options, &|progress| match progress {
+    let baked = bake::grid(geometry, options, &|progress| match progress {
         Progress::Level { cells } => bar.set_length(bar.length().unwrap_or(0) + cells),
         Progress::Done { cells } => bar.inc(cells),
     });
     bar.finish_and_clear();
-    let baked = baked.map_err(|error| Error {
+    let named = |error: Error| Error {
         file: Some(input.to_path_buf()),
         ..error
-    })?;
-    let bytes = writer::to_bytes(&baked).map_err(|error| Error {
-        file: Some(input.to_path_buf()),
-        ..error
-    })?;
+    };
+    let bytes = writer::to_bytes(&baked.map_err(named)?).map_err(named)?;
     AssetFile::new(&bytes).map_err(|error| {
-        Failure::failed(
-            format!("{}: baked into a bad asset: {error}", input.display()),
-            "report this",
-        )
+        let what = format!("baked into a bad asset: {error}");
+        Error::file(input, what, "report this")
     })
 }
 

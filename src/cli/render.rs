@@ -1,5 +1,8 @@
 //! `rhogrid render`.
 
+mod report;
+mod scene;
+
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -10,22 +13,25 @@ use rhogrid_core::shadow::{Method, Shadows};
 use serde::Serialize;
 
 use super::Failure;
-use super::args::{QualityArgs, SourceArgs, ViewArgs};
+use super::args::{QualityArgs, ShadowChoice, SourceArgs, ViewArgs};
 use super::frame::{
     Frame, core_camera, core_light, core_quality, core_shadows, draw_frame, draw_shadowed,
     float_light, float_view,
 };
 use super::model::{Model, check_distinct, is_asset, load_geometry, progress_bar};
+use super::scene::is_scene;
 use crate::asset_file::AssetFile;
 use crate::bake::Cube;
 use crate::geometry::Geometry;
-use crate::measure::{Depths, ReferenceMeasures, against_reference};
+use crate::measure::{Depths, against_reference};
 use crate::reference::{DEFAULT_SAMPLES_PER_AXIS, Reference, Scene, render};
+use crate::view::Light;
+use report::{Report, print};
 
 /// Arguments of `rhogrid render`.
 #[derive(Debug, Args)]
 pub struct RenderArgs {
-    /// Asset (.rho), mesh or cloud (.obj, .ply), or builtin:demo
+    /// Asset (.rho), mesh or cloud (.obj, .ply), scene (.toml), or builtin:demo
     input: PathBuf,
     /// Picture to write; with --orbit, OUT-000.png and so on
     #[arg(short, long, value_name = "OUT.png")]
@@ -39,6 +45,9 @@ pub struct RenderArgs {
     /// Draw the original geometry with the float reference instead
     #[arg(long, conflicts_with_all = ["compare", "frames"])]
     reference: bool,
+    /// Where a scene's models are, if not beside its file
+    #[arg(long, value_name = "DIR")]
+    models: Option<PathBuf>,
     /// Measure the picture against the float reference, too
     #[arg(long)]
     compare: bool,
@@ -54,32 +63,6 @@ pub struct RenderArgs {
     /// Say more of what was drawn
     #[arg(short, long)]
     verbose: bool,
-}
-
-/// What was drawn, and what it cost.
-#[derive(Debug, Serialize)]
-struct Report {
-    output: PathBuf,
-    width: u16,
-    height: u16,
-    /// Null where the eye was given.
-    yaw: Option<f64>,
-    frame_hash: String,
-    nodes_visited: u32,
-    nodes_back_facing: u32,
-    nodes_outside: u32,
-    nodes_hidden: u32,
-    facing_tests: u32,
-    side_tests: u32,
-    samples_drawn: u32,
-    splats_drawn: u32,
-    casters_visited: u32,
-    casters_drawn: u32,
-    pixels_written: usize,
-    time_ns: u64,
-    frames: u32,
-    #[serde(flatten)]
-    measures: Option<ReferenceMeasures>,
 }
 
 /// What the reference drew.
@@ -108,21 +91,19 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
             "{output}: pictures are PNG; name it OUT.png"
         )));
     }
-    if args
-        .input
-        .extension()
-        .is_some_and(|extension| extension == "toml")
-    {
-        return Err(Failure::Usage(
-            "scene files are not supported; give one asset or mesh".into(),
-        ));
+    if is_scene(&args.input) {
+        return scene::run(args);
+    }
+    if args.models.is_some() {
+        return Err(Failure::Usage("--models is for scenes".into()));
     }
     let count = args.orbit.unwrap_or(1);
     if args.reference {
         let geometry = source_geometry(args)?;
         let scene = Scene::new(&geometry, args.source.two_sided);
         let cube = Cube::of(&geometry)?;
-        return (0..count).try_for_each(|index| draw_reference(args, &scene, &cube, index));
+        let light = float_light(&args.quality);
+        return (0..count).try_for_each(|index| draw_reference(args, &scene, &cube, &light, index));
     }
     let model = Model::open(&args.input, &args.source)?;
     let scene = match (&model.geometry, args.compare) {
@@ -147,7 +128,7 @@ fn source_geometry(args: &RenderArgs) -> Result<Geometry, Failure> {
     if is_asset(&args.input) {
         return Err(no_geometry(&args.input));
     }
-    Ok(load_geometry(&args.input, &args.source)?)
+    Ok(load_geometry(&args.input, args.source.grid_options().up)?)
 }
 
 /// The view of the index-th picture.
@@ -176,11 +157,12 @@ fn draw_reference(
     args: &RenderArgs,
     scene: &Scene,
     cube: &Cube,
+    light: &Light,
     index: u32,
 ) -> Result<(), Failure> {
     let view = view_at(args, index);
     let output = output_at(args, index);
-    let reference = trace(args, &view, scene, cube);
+    let reference = trace(&view, scene, cube, light);
     reference.picture().save_png(&output)?;
     if args.json {
         return super::print_json(&ReferenceReport {
@@ -199,14 +181,13 @@ fn draw_reference(
     Ok(())
 }
 
-fn trace(args: &RenderArgs, view: &ViewArgs, scene: &Scene, cube: &Cube) -> Reference {
+fn trace(view: &ViewArgs, scene: &Scene, cube: &Cube, light: &Light) -> Reference {
     let bar = progress_bar();
     bar.set_length(u64::from(view.size.height));
-    let light = float_light(&args.quality);
     let reference = render(
         scene,
         &float_view(view, cube),
-        &light,
+        light,
         DEFAULT_SAMPLES_PER_AXIS,
         &|rows| {
             bar.set_position(u64::from(rows));
@@ -225,14 +206,14 @@ fn draw_grid(
     let (grid, cube) = (asset.grid(), asset.cube());
     let view = view_at(args, index);
     let output = output_at(args, index);
-    let camera = core_camera(&view, &grid, &cube);
+    let camera = core_camera(&view, grid.radius(), &cube);
     let quality = core_quality(&args.quality);
     if args.verbose && !args.json {
         let plan = Plan::new(&grid, &camera, &quality).to_string();
         super::say(format_args!("{}", plan.trim_end()))?;
     }
     let light = core_light(&args.quality);
-    let frame = match core_shadows(&args.quality) {
+    let frame = match core_shadows(&args.quality, ShadowChoice::Off) {
         Shadows {
             method: Method::Off,
             ..
@@ -242,7 +223,7 @@ fn draw_grid(
     let picture = frame.picture();
     picture.save_png(&output)?;
     let measures = scene.map(|scene| {
-        let reference = trace(args, &view, scene, &cube);
+        let reference = trace(&view, scene, &cube, &float_light(&args.quality));
         let (w, tolerance) = depths(&frame, &camera, asset, args.quality.splat);
         let depths = Depths {
             w: &w,
@@ -283,92 +264,4 @@ fn depths(frame: &Frame, camera: &Camera, asset: &AssetFile, splat: f64) -> (Vec
         ((w * unit) as f32, (tolerance * unit) as f32)
     };
     frame.depth.iter().map(pixel).unzip()
-}
-
-impl Report {
-    fn new(
-        output: PathBuf,
-        yaw: Option<f64>,
-        frame: &Frame,
-        frames: u32,
-        measures: Option<ReferenceMeasures>,
-    ) -> Self {
-        Self {
-            output,
-            width: frame.width,
-            height: frame.height,
-            yaw,
-            frame_hash: format!("{:08x}", frame.hash()),
-            nodes_visited: frame.stats.nodes_visited,
-            nodes_back_facing: frame.stats.nodes_back_facing,
-            nodes_outside: frame.stats.nodes_outside,
-            nodes_hidden: frame.stats.nodes_hidden,
-            facing_tests: frame.stats.facing_tests,
-            side_tests: frame.stats.side_tests,
-            samples_drawn: frame.stats.samples_drawn,
-            splats_drawn: frame.stats.splats_drawn,
-            casters_visited: frame.stats.casters_visited,
-            casters_drawn: frame.stats.casters_drawn,
-            pixels_written: frame.depth.iter().filter(|&&depth| depth > 0).count(),
-            time_ns: frame.time_ns,
-            frames,
-            measures,
-        }
-    }
-}
-
-fn print(args: &RenderArgs, report: &Report) -> Result<(), Failure> {
-    if args.json {
-        return super::print_json(report);
-    }
-    super::say(format_args!(
-        "{}: {}x{}, frame {}, {} samples, {} pixels written, {:.2} ms",
-        report.output.display(),
-        report.width,
-        report.height,
-        report.frame_hash,
-        report.samples_drawn,
-        report.pixels_written,
-        report.time_ns as f64 / 1e6
-    ))?;
-    if args.verbose {
-        super::say(format_args!(
-            "  work: {} nodes, {} back-facing, {} outside, {} hidden; {} facing tests, {} side tests; \
-             {} samples one by one; {} nodes and {} squares for shadows; median of {} frames",
-            report.nodes_visited,
-            report.nodes_back_facing,
-            report.nodes_outside,
-            report.nodes_hidden,
-            report.facing_tests,
-            report.side_tests,
-            report.splats_drawn,
-            report.casters_visited,
-            report.casters_drawn,
-            report.frames
-        ))?;
-    }
-    if let Some(measures) = &report.measures {
-        super::say(format_args!(
-            "  against the reference: {}",
-            describe(measures)
-        ))?;
-    }
-    Ok(())
-}
-
-fn describe(measures: &ReferenceMeasures) -> String {
-    let decibels =
-        |value: Option<f64>| value.map_or("identical".into(), |db| format!("{db:.2} dB"));
-    let inside = match measures.inside_pixels {
-        0 => "of no pixel".into(),
-        _ => decibels(measures.psnr_inside),
-    };
-    format!(
-        "psnr_inside {inside}, psnr {}, ssim {:.4}, rmse {:.2}, {} holes, {} see-through",
-        decibels(measures.frame.psnr),
-        measures.frame.ssim,
-        measures.frame.rmse,
-        measures.holes,
-        measures.see_through.unwrap_or(0)
-    )
 }

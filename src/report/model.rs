@@ -198,7 +198,7 @@ impl Model {
     /// The core's camera of each view.
     pub fn cameras(&self, asset: &AssetFile) -> Vec<Camera> {
         let views = self.views.iter();
-        let camera = |view| core_camera(view, &asset.grid(), &asset.cube());
+        let camera = |view| core_camera(view, asset.grid().radius(), &asset.cube());
         views.map(camera).collect()
     }
 

@@ -222,6 +222,7 @@ impl<'m> Maps<'m> {
     /// Draws all of them.
     fn cast(&mut self, scene: &Scene<'_>, stats: &mut Stats) {
         for map in self.maps.iter_mut().flatten() {
+            stats.shadow_passes += 1;
             for instance in scene.instances {
                 if let Some(inverse) = Inverse::of(&instance.placement) {
                     let normals = NormalMap::new(&instance.placement, inverse);

@@ -1,12 +1,16 @@
 //! Light and knobs of a frame.
 
 use clap::{Args, ValueEnum};
+use glam::DVec3;
 use rhogrid_core::draw::Quality;
 use rhogrid_core::numbers::SplatPx;
 use rhogrid_core::shadow::Shadows;
 
 use super::super::Failure;
 use super::Triple;
+
+/// Towards the light unless somebody says otherwise.
+const DEFAULT_LIGHT: DVec3 = DVec3::new(1.0, 2.0, 1.5);
 
 /// Whether and how a light casts shadows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -51,14 +55,10 @@ pub enum CullingChoice {
 /// Light and knobs of a frame.
 #[derive(Clone, Debug, Args)]
 pub struct QualityArgs {
-    /// World direction towards the light
-    #[arg(
-        long,
-        value_name = "X,Y,Z",
-        default_value = "1,2,1.5",
-        allow_hyphen_values = true
-    )]
-    pub light: Triple,
+    /// World direction towards the light; scenes have their own [default:
+    /// 1,2,1.5]
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
+    pub light: Option<Triple>,
     /// Cells with edges of at most this many pixels are one sample each
     #[arg(
         long,
@@ -80,9 +80,10 @@ pub struct QualityArgs {
     /// What becomes of what faces away or is hidden
     #[arg(long, value_enum, default_value = "on")]
     pub culling: CullingChoice,
-    /// How the light casts shadows; --reference traces rays for either way
-    #[arg(long, value_enum, default_value = "off")]
-    pub shadows: ShadowChoice,
+    /// How lights cast shadows; --reference traces rays for either way
+    /// [default: off; for scenes one-pass]
+    #[arg(long, value_enum)]
+    pub shadows: Option<ShadowChoice>,
     /// Texels along a side of the shadow map
     #[arg(long, value_name = "TEXELS", default_value_t = Shadows::default().size,
         value_parser = clap::value_parser!(u16).range(i64::from(Shadows::MIN_SIZE)..=i64::from(Shadows::MAX_SIZE)))]
@@ -105,7 +106,7 @@ impl QualityArgs {
     /// When the light has no direction, a size is out of range or a bound has
     /// no use.
     pub fn check(&self) -> Result<(), Failure> {
-        if self.light.0.try_normalize().is_none() {
+        if self.towards().try_normalize().is_none() {
             return Err(Failure::Usage(
                 "--light needs a direction other than 0,0,0".into(),
             ));
@@ -130,6 +131,11 @@ impl QualityArgs {
             )),
             _ => Ok(()),
         }
+    }
+
+    /// The direction towards the light, of any length.
+    pub fn towards(&self) -> DVec3 {
+        self.light.map_or(DEFAULT_LIGHT, |light| light.0)
     }
 
     /// How far additions may be off.

@@ -130,6 +130,20 @@ pub struct Materials {
 }
 
 impl Materials {
+    /// Of up to eight colours; further ones are left out.
+    pub fn new(colours: &[Rgb]) -> Self {
+        let mut own = [[0; 3]; MAX_MATERIALS];
+        let mut count = 0;
+        for (own, &colour) in own.iter_mut().zip(colours) {
+            *own = colour;
+            count += 1;
+        }
+        Self {
+            count,
+            colours: own,
+        }
+    }
+
     /// The colours.
     pub fn as_slice(&self) -> &[Rgb] {
         self.colours

@@ -4,11 +4,14 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use rhogrid::asset_file::AssetFile;
+use rhogrid::bake::Cube;
+use rhogrid::cli::{ambient, is_scene, lamps, load_scene, placements};
 use rhogrid::error::Error;
 use rhogrid_core::draw::{Light, Quality};
+use rhogrid_core::numbers::{Length, Weight};
 use rhogrid_core::scene::Lamp;
 use rhogrid_core::shadow::Shadows;
-use rhogrid_frame::{Content, Placed, Settings};
+use rhogrid_frame::{Content, Materials, Placed, Settings};
 
 use crate::frame_file::FrameFile;
 use crate::host::{self, HostFrame};
@@ -27,8 +30,10 @@ use crate::{failure, firmware, symbols, workspace};
 pub struct Job {
     /// The machine.
     pub machine: &'static Machine,
-    /// The asset.
+    /// The asset, or a scene.
     pub file: PathBuf,
+    /// Where a scene's models are, if not beside its file.
+    pub models: Option<PathBuf>,
     /// The views, measured in this order.
     pub views: Vec<View>,
     /// The light.
@@ -45,29 +50,64 @@ impl Job {
     /// What the machine draws.
     ///
     /// # Errors
-    /// When the asset cannot be read or is too large.
+    /// When something cannot be read or is too large.
     pub fn frame_file(&self) -> Result<FrameFile, Error> {
+        if is_scene(&self.file) {
+            return self.scene();
+        }
         let asset = AssetFile::load(&self.file)?;
-        let cameras = |view: &View| rhogrid_frame::View {
-            warm_up: view.warm_up(&asset),
-            measured: view.camera(&asset),
-        };
-        let cameras: Vec<_> = self.views.iter().map(cameras).collect();
-        let size = cameras.first().map(|view| view.measured);
-        let settings = Settings {
-            width: size.map_or(0, |camera| camera.width),
-            height: size.map_or(0, |camera| camera.height),
-            ambient: self.light.ambient,
-            quality: self.quality,
-            shadows: self.shadows,
-        };
+        let views = self.cameras(asset.grid().radius(), &asset.cube());
         FrameFile::new(&Content {
-            settings,
-            views: &cameras,
+            settings: self.settings(&views, self.light.ambient),
+            views: &views,
             assets: &[asset.bytes()],
             instances: &[Placed::ALONE],
             lamps: &[lamp(&self.light)],
         })
+    }
+
+    fn scene(&self) -> Result<FrameFile, Error> {
+        let scene = load_scene(&self.file, self.models.as_deref())?;
+        let views = self.cameras(Length::ONE, &scene.cube);
+        let assets: Vec<&[u8]> = scene
+            .models
+            .iter()
+            .map(|model| model.asset.bytes())
+            .collect();
+        let placed = scene.instances.iter().zip(placements(&scene));
+        let instances: Vec<Placed> = placed
+            .map(|(instance, placement)| Placed {
+                asset: instance.model as u32,
+                placement,
+                materials: instance.materials.as_deref().map(Materials::new),
+            })
+            .collect();
+        FrameFile::new(&Content {
+            settings: self.settings(&views, ambient(&scene)),
+            views: &views,
+            assets: &assets,
+            instances: &instances,
+            lamps: &lamps(&scene),
+        })
+    }
+
+    fn cameras(&self, radius: Length, cube: &Cube) -> Vec<rhogrid_frame::View> {
+        let cameras = |view: &View| rhogrid_frame::View {
+            warm_up: view.warm_up(radius, cube),
+            measured: view.camera(radius, cube),
+        };
+        self.views.iter().map(cameras).collect()
+    }
+
+    fn settings(&self, views: &[rhogrid_frame::View], ambient: Weight) -> Settings {
+        let size = views.first().map(|view| view.measured);
+        Settings {
+            width: size.map_or(0, |camera| camera.width),
+            height: size.map_or(0, |camera| camera.height),
+            ambient,
+            quality: self.quality,
+            shadows: self.shadows,
+        }
     }
 }
 

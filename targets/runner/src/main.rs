@@ -1,4 +1,4 @@
-//! `targets/run MACHINE FILE.rho`: draws an asset on a machine under QEMU,
+//! `targets/run MACHINE FILE.rho|SCENE.toml`: draws an asset or a scene on a machine under QEMU,
 //! measures every view, and compares its pictures with the host's.
 
 use std::path::PathBuf;
@@ -6,7 +6,9 @@ use std::process::ExitCode;
 
 use clap::error::ErrorKind;
 use clap::{CommandFactory, Parser};
-use rhogrid::cli::{Failure, QualityArgs, core_light, core_quality, core_shadows};
+use rhogrid::cli::{
+    Failure, QualityArgs, ShadowChoice, core_light, core_quality, core_shadows, is_scene,
+};
 use rhogrid_targets::job::{Job, measure, print};
 use rhogrid_targets::machine::{self, Machine};
 use rhogrid_targets::views::{self, View};
@@ -29,9 +31,12 @@ struct Arguments {
     /// The machine: sa1110 or m3
     #[arg(value_parser = machine::find)]
     machine: &'static Machine,
-    /// The asset
-    #[arg(value_name = "FILE.rho")]
+    /// The asset, or a scene
+    #[arg(value_name = "FILE.rho|SCENE.toml")]
     file: PathBuf,
+    /// Where a scene's models are, if not beside its file
+    #[arg(long, value_name = "DIR")]
+    models: Option<PathBuf>,
     /// full, far, close (four yaws each) or YAW,PITCH,DISTANCE in degrees and
     /// radii; may be repeated [default: full, far and close]
     #[arg(long = "view", value_name = "VIEW", value_parser = parse_views, allow_hyphen_values = true)]
@@ -69,9 +74,11 @@ fn main() -> ExitCode {
 impl Arguments {
     /// Checks what clap cannot.
     fn check(&self) -> Result<(), String> {
-        let extension = self.file.extension();
-        if extension.is_some_and(|extension| extension == "toml") {
-            return Err("scenes are not supported yet; name an asset (FILE.rho)".to_owned());
+        if is_scene(&self.file) && self.quality.light.is_some() {
+            return Err("--light is for assets; a scene file has its own lights".to_owned());
+        }
+        if !is_scene(&self.file) && self.models.is_some() {
+            return Err("--models is for scenes".to_owned());
         }
         match self.quality.check() {
             Ok(()) => Ok(()),
@@ -86,13 +93,18 @@ impl Arguments {
         } else {
             self.views.concat()
         };
+        let shadows = match is_scene(&self.file) {
+            true => ShadowChoice::OnePass,
+            false => ShadowChoice::Off,
+        };
         Job {
             machine: self.machine,
+            shadows: core_shadows(&self.quality, shadows),
             file: self.file,
+            models: self.models,
             views,
             light: core_light(&self.quality),
             quality: core_quality(&self.quality),
-            shadows: core_shadows(&self.quality),
             by_stage: false,
         }
     }

@@ -1,9 +1,10 @@
 //! Standard views and views of one's own, as cameras of the core.
 
 use clap::Parser;
-use rhogrid::asset_file::AssetFile;
+use rhogrid::bake::Cube;
 use rhogrid::cli::{Failure, ViewArgs, core_camera};
 use rhogrid_core::camera::Camera;
+use rhogrid_core::numbers::Length;
 
 /// Pitch of the standard views in degrees.
 const PITCH: f64 = 15.0;
@@ -85,14 +86,14 @@ struct RenderView {
 
 impl View {
     /// The camera of this view: the one that `rhogrid render` has.
-    pub fn camera(&self, asset: &AssetFile) -> Camera {
-        core_camera(&self.options(self.yaw), &asset.grid(), &asset.cube())
+    pub fn camera(&self, radius: Length, cube: &Cube) -> Camera {
+        core_camera(&self.options(self.yaw), radius, cube)
     }
 
     /// The camera of the picture that is drawn before this one.
-    pub fn warm_up(&self, asset: &AssetFile) -> Camera {
+    pub fn warm_up(&self, radius: Length, cube: &Cube) -> Camera {
         let options = self.options(self.yaw + WARM_UP_YAW);
-        core_camera(&options, &asset.grid(), &asset.cube())
+        core_camera(&options, radius, cube)
     }
 
     /// Size and field of view are the defaults, which are the standard.

@@ -13,7 +13,11 @@ fn run(arguments: &[&str]) -> Output {
 fn wrong_usage_is_2_and_says_what_is_right() {
     for (arguments, message) in [
         (&["m0", "a.rho"][..], "there are sa1110, m3"),
-        (&["sa1110", "scene.toml"], "scenes are not supported yet"),
+        (
+            &["sa1110", "scene.toml", "--light", "1,2,3"],
+            "its own lights",
+        ),
+        (&["sa1110", "a.rho", "--models", "."], "for scenes"),
         (&["sa1110"], "FILE.rho"),
         (&["m3", "a.rho", "--view", "near"], "YAW,PITCH,DISTANCE"),
         (&["m3", "a.rho", "--splat", "x"], "--splat"),

@@ -1,0 +1,140 @@
+//! `rhogrid render SCENE.toml`.
+
+use rhogrid_core::numbers::Length;
+use rhogrid_core::scene::{Lighting, Scene as CoreScene};
+use rhogrid_core::shadow::Method;
+
+use super::super::Failure;
+use super::super::args::ShadowChoice;
+use super::super::frame::{core_camera, core_quality, core_shadows, draw_placed};
+use super::super::scene::{ambient, grids, instances, lamps, load_scene, placements};
+use super::report::{Report, print};
+use super::{RenderArgs, draw_reference, output_at, trace, view_at};
+use crate::geometry::Geometry;
+use crate::measure::against_reference;
+use crate::reference;
+use crate::scene::Scene;
+use crate::view::Light;
+
+/// Draws and writes one picture or an orbit of them.
+pub fn run(args: &RenderArgs) -> Result<(), Failure> {
+    args.source.check_unused(&args.input)?;
+    if args.quality.light.is_some() {
+        return Err(Failure::Usage(
+            "--light is for models; a scene file has its own lights".into(),
+        ));
+    }
+    let scene = load_scene(&args.input, args.models.as_deref())?;
+    let count = args.orbit.unwrap_or(1);
+    let original = match args.reference || args.compare {
+        true => Some(original(args, &scene)?),
+        false => None,
+    };
+    (0..count).try_for_each(|index| match &original {
+        Some((original, light)) if args.reference => {
+            draw_reference(args, original, &scene.cube, light, index)
+        }
+        original => draw(args, &scene, original.as_ref(), index),
+    })
+}
+
+/// The original geometry and its light, for the reference.
+fn original(args: &RenderArgs, scene: &Scene) -> Result<(reference::Scene, Light), Failure> {
+    let wrong = |what: &str, remedy: &str| {
+        let file = args.input.display();
+        Failure::failed(format!("{file}: {what}"), remedy)
+    };
+    let mesh = scene.merged().ok_or_else(|| {
+        wrong(
+            "the reference draws scenes of meshes alone, with 255 materials",
+            "name meshes, not assets or clouds",
+        )
+    })?;
+    let [lamp] = scene.lamps[..] else {
+        return Err(wrong(
+            "the reference draws scenes with one light",
+            "leave the others out",
+        ));
+    };
+    if lamp.colour != [255; 3] {
+        return Err(wrong(
+            "the reference draws white lights alone",
+            "leave colour out",
+        ));
+    }
+    let is_two_sided = scene
+        .models
+        .iter()
+        .any(|model| model.asset.grid().two_sided());
+    let light = Light {
+        towards: lamp.towards,
+        ambient: scene.ambient,
+        diffuse: lamp.diffuse,
+        casts: lamp.casts && args.quality.shadows != Some(ShadowChoice::Off),
+    };
+    let original = reference::Scene::new(&Geometry::Mesh(mesh), is_two_sided);
+    Ok((original, light))
+}
+
+fn draw(
+    args: &RenderArgs,
+    scene: &Scene,
+    original: Option<&(reference::Scene, Light)>,
+    index: u32,
+) -> Result<(), Failure> {
+    let view = view_at(args, index);
+    let output = output_at(args, index);
+    let (grids, placements, lamps) = (grids(scene), placements(scene), lamps(scene));
+    let instances = instances(scene, &grids, &placements);
+    let content = CoreScene {
+        instances: &instances,
+        lighting: Lighting {
+            ambient: ambient(scene),
+            lamps: &lamps,
+        },
+        shadows: core_shadows(&args.quality, ShadowChoice::OnePass),
+    };
+    let camera = core_camera(&view, Length::ONE, &scene.cube);
+    let quality = core_quality(&args.quality);
+    if args.verbose && !args.json {
+        describe(scene, &content)?;
+    }
+    let frame = draw_placed(&content, &camera, &quality, args.frames);
+    let picture = frame.picture();
+    picture.save_png(&output)?;
+    let measures = original.map(|(original, light)| {
+        let reference = trace(&view, original, &scene.cube, light);
+        against_reference(&picture, None, &reference)
+    });
+    let measures = measures
+        .transpose()
+        .map_err(|_| Failure::failed("sizes differ", "report this"))?;
+    let yaw = args.view.eye.is_none().then_some(view.yaw);
+    let report = Report::new(output, yaw, &frame, args.frames, measures);
+    print(args, &report)
+}
+
+/// Says what the scene holds.
+fn describe(scene: &Scene, content: &CoreScene<'_>) -> Result<(), Failure> {
+    let bytes: usize = scene
+        .models
+        .iter()
+        .map(|model| model.asset.bytes().len())
+        .sum();
+    let samples: usize = content
+        .instances
+        .iter()
+        .filter_map(|instance| instance.grid.levels().last())
+        .map(|level| level.attributes.len())
+        .sum();
+    let shadows = match content.shadows.method {
+        Method::Off => "off",
+        Method::TwoPass => "two passes",
+        Method::OnePass => "one pass where instances have an order",
+    };
+    super::super::say(format_args!(
+        "{} instances of {} assets, {bytes} bytes, {samples} leaf samples; shadows {shadows}",
+        content.instances.len(),
+        scene.models.len(),
+    ))
+}
