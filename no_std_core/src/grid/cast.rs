@@ -14,7 +14,7 @@ use super::tables::{Point, Tables};
 use crate::asset::Grid;
 use crate::asset::node::Flags;
 use crate::numbers::SCREEN_BITS;
-use crate::shadow::{CastForms, DEPTH_BITS, Map, PITCH, TEXEL_BITS, WINDOW};
+use crate::shadow::{CastForms, DEPTH_BITS, Map, PITCH, TEXEL_BITS, WINDOW, WINDOW_SIDE};
 use crate::stats::Stats;
 
 /// Fraction bits of texels beyond a step's.
@@ -92,7 +92,8 @@ pub(super) fn with_caster<const RHO: u8, const CELLS: usize, const LEVELS: usize
     tables.fill(RHO, forms.bottom, &forms.forms, 0);
     let mut subcells = Subcells::blank();
     let steps = tables.extents(forms.bottom).half_edges.map(step);
-    let fits = map.has_windows() && forms.side <= 2 && fits_window::<RHO>(&steps, forms.side);
+    let fits =
+        map.has_windows() && forms.side <= WINDOW_SIDE && fits_window::<RHO>(&steps, forms.side);
     if fits {
         subcells.fill::<RHO>(&steps);
     }
@@ -228,7 +229,8 @@ impl<const CELLS: usize, const LEVELS: usize> Caster<'_, '_, '_, CELLS, LEVELS> 
     fn block<const RHO: u8>(&mut self, centre: Point, cells: Mask<RHO>, subcells: &Subcells) {
         match self.side {
             1 => self.block_of::<RHO, 1>(centre, cells, subcells),
-            _ => self.block_of::<RHO, 2>(centre, cells, subcells),
+            2 => self.block_of::<RHO, 2>(centre, cells, subcells),
+            _ => self.block_of::<RHO, 3>(centre, cells, subcells),
         }
     }
 

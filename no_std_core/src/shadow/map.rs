@@ -29,7 +29,7 @@ impl<'a> Map<'a> {
     /// [`PITCH`] texels a side; and its first column and row.
     #[inline(always)]
     pub fn window(&mut self, [u, v]: [i32; 2]) -> Option<([i32; 2], &mut Window)> {
-        let last = PITCH as i32 - WINDOW - 1;
+        let last = PITCH as i32 - WINDOW - WINDOW_SIDE as i32 + 1;
         let first = |at: i32| ((at >> TEXEL_BITS) - WINDOW / 2).clamp(0, last);
         let first = [first(u), first(v)];
         let start = first[1] as usize * PITCH + first[0] as usize;
@@ -72,9 +72,11 @@ pub(crate) const PITCH: usize = 256;
 /// Rows and columns of a window.
 pub(crate) const WINDOW: i32 = 16;
 
-/// A part of a map: 16 rows and columns, and what squares of two texels at any
-/// of them reach.
-pub(crate) type Window = [u16; WINDOW as usize * (PITCH + 1) + 1];
+/// Texels along a side of the largest squares that are drawn in windows.
+pub(crate) const WINDOW_SIDE: usize = 3;
+
+/// A part of a map: 16 rows and columns, and what squares at any of them reach.
+pub(crate) type Window = [u16; (WINDOW as usize + WINDOW_SIDE - 2) * (PITCH + 1) + 1];
 
 /// How a grid's cells reach a map.
 pub(crate) struct CastForms {

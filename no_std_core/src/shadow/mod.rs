@@ -13,7 +13,7 @@ mod map;
 mod receive;
 mod space;
 
-pub(crate) use map::{CastForms, Map, PITCH, WINDOW, edge};
+pub(crate) use map::{CastForms, Map, PITCH, WINDOW, WINDOW_SIDE, edge};
 pub(crate) use receive::{Receiver, Row, bias};
 pub(crate) use space::{DEPTH_BITS, LightSpace, Sphere, TEXEL_BITS};
 
@@ -62,12 +62,12 @@ impl Shadows {
 }
 
 impl Default for Shadows {
-    /// Off; 256 texels, of which cells take up to one and a half.
+    /// Off; 256 texels, of which cells take up to two and a quarter.
     fn default() -> Self {
         Self {
             method: Method::Off,
             size: 256,
-            splat: SplatPx::lit("1.5"),
+            splat: SplatPx::lit("2.25"),
             bias: SplatPx::ONE,
         }
     }

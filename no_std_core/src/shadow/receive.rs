@@ -34,9 +34,9 @@ const DEPTH_BITS: i32 = 1;
 const AWAY: u8 = u8::MAX;
 /// Steps of the tangents that are tabulated.
 const TANGENT_ONE: usize = 16;
-/// Largest tangent, in steps: of 74 degrees. Beyond, a bias that keeps surfaces
+/// Largest tangent, in steps: of 79 degrees. Beyond, a bias that keeps surfaces
 /// from shadowing themselves would let in more light than it does good.
-const STEEPEST: usize = 56;
+const STEEPEST: usize = 80;
 
 /// A form of light space over a picture's pixels and w.
 #[derive(Clone, Copy, Debug, Default)]

@@ -73,7 +73,7 @@ fn maps_are_those_of_all_cells() {
         let mut texels = std::vec![0u16; usize::from(size).pow(2)];
         let mut stats = Stats::default();
         let mut map = Map::new(&mut texels, size);
-        windowed += usize::from(map.has_windows() && forms.side <= 2 && forms.bottom > 0);
+        windowed += usize::from(map.has_windows() && forms.side <= WINDOW_SIDE && forms.bottom > 0);
         cast(&grid, &forms, None, &mut map, &mut stats);
 
         let places = places(&model, usize::from(forms.bottom), &space, radius);
