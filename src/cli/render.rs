@@ -23,9 +23,9 @@ use super::scene::is_scene;
 use crate::asset_file::AssetFile;
 use crate::bake::Cube;
 use crate::geometry::Geometry;
-use crate::measure::{Depths, against_reference};
+use crate::measure::{Depths, SizeMismatch, against_reference, shadow_errors};
 use crate::reference::{DEFAULT_SAMPLES_PER_AXIS, Reference, Scene, render};
-use crate::view::Light;
+use crate::view::{Light, View};
 use report::{Report, print};
 
 /// Arguments of `rhogrid render`.
@@ -213,12 +213,10 @@ fn draw_grid(
         super::say(format_args!("{}", plan.trim_end()))?;
     }
     let light = core_light(&args.quality);
-    let frame = match core_shadows(&args.quality, ShadowChoice::Off) {
-        Shadows {
-            method: Method::Off,
-            ..
-        } => draw_frame(&grid, &camera, &light, &quality, args.frames),
-        shadows => draw_shadowed(&grid, &camera, &light, &quality, &shadows, args.frames),
+    let shadows = core_shadows(&args.quality, ShadowChoice::Off);
+    let frame = match shadows.method {
+        Method::Off => draw_frame(&grid, &camera, &light, &quality, args.frames),
+        _ => draw_shadowed(&grid, &camera, &light, &quality, &shadows, args.frames),
     };
     let picture = frame.picture();
     picture.save_png(&output)?;
@@ -229,11 +227,18 @@ fn draw_grid(
             w: &w,
             tolerance: &tolerance,
         };
-        against_reference(&picture, Some(depths), &reference)
+        let mut measures = against_reference(&picture, Some(depths), &reference)?;
+        if shadows.method != Method::Off {
+            let lit = draw_frame(&grid, &camera, &light, &quality, 1).picture();
+            let radius = edge_radius(&float_view(&view, &cube), &cube, &shadows);
+            let errors = shadow_errors(&picture, &lit, &reference, radius)?;
+            measures.shadow_errors = Some(errors);
+        }
+        Ok(measures)
     });
     let measures = measures
         .transpose()
-        .map_err(|_| Failure::failed("sizes differ", "report this"))?;
+        .map_err(|_: SizeMismatch| Failure::failed("sizes differ", "report this"))?;
     print(
         args,
         &Report::new(
@@ -244,6 +249,16 @@ fn draw_grid(
             measures,
         ),
     )
+}
+
+/// Two texels of a shadow map in pixels, in the middle of a model: nearer to the
+/// edge of a shadow its state is not held against the reference.
+fn edge_radius(view: &View, cube: &Cube, shadows: &Shadows) -> f64 {
+    let w = (cube.centre - view.eye)
+        .dot(view.forward)
+        .max(f64::MIN_POSITIVE);
+    let texel = 2.0 * cube.radius / f64::from(shadows.size);
+    (2.0 * texel * view.focal_px / w).min(f64::from(view.width))
 }
 
 /// Each pixel's w in source units, and how much deeper than the reference is

@@ -2,7 +2,10 @@
 //! numbers or a difference picture out. All on 8-bit values, undrawn pixels
 //! black.
 
+mod shadow;
 mod ssim;
+
+pub use shadow::shadow_errors;
 
 use std::fmt;
 
@@ -55,6 +58,8 @@ pub struct ReferenceMeasures {
     /// so that a pixel that a silhouette runs through may show either side of
     /// it. `None` without depths.
     pub see_through: Option<u64>,
+    /// See [`shadow_errors`]; `None` without shadows.
+    pub shadow_errors: Option<f64>,
 }
 
 /// The depths of a drawn picture, row-major like its pixels.
@@ -172,6 +177,7 @@ pub fn against_reference(
         drawn_pixels: count(&picture.drawn),
         holes: holes(picture, &inside),
         see_through: depths.map(|depths| see_through(picture, depths, reference, &inside)),
+        shadow_errors: None,
     })
 }
 
@@ -262,6 +268,8 @@ mod tests {
             coverage: vec![1.0; count],
             nearest: vec![2.0; count],
             farthest: vec![2.0; count],
+            lambert: vec![1.0; count],
+            shadow: vec![0.0; count],
         }
     }
 

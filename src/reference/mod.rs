@@ -63,6 +63,9 @@ struct Sight {
     /// In multiples of the ray's direction, scene space.
     distance: f64,
     colour: DVec3,
+    /// Lambert's cosine.
+    lambert: f64,
+    shadowed: bool,
 }
 
 /// A drawn reference. Pixels are row-major from the top left.
@@ -82,6 +85,11 @@ pub struct Reference {
     pub nearest: Vec<f32>,
     /// Largest depth among each pixel's hits; 0 without hits.
     pub farthest: Vec<f32>,
+    /// Mean of Lambert's cosine over each pixel's hits, as if nothing cast
+    /// shadows; 0 without hits.
+    pub lambert: Vec<f32>,
+    /// Share of that light that shadows take away; 0 where there is none.
+    pub shadow: Vec<f32>,
 }
 
 impl Scene {
@@ -118,6 +126,8 @@ impl Scene {
         Some(Sight {
             distance: spot.distance,
             colour: shade(spot.diffuse, light, if shadowed { 0.0 } else { lambert }),
+            lambert,
+            shadowed,
         })
     }
 
@@ -127,6 +137,7 @@ impl Scene {
         let within = |step: u32| (f64::from(step) + 0.5) / f64::from(samples_per_axis);
         let (mut colour, mut hits) = (DVec3::ZERO, 0);
         let (mut nearest, mut farthest) = (f64::INFINITY, 0.0_f64);
+        let (mut lambert, mut taken) = (0.0, 0.0);
         for row in 0..samples_per_axis {
             for column in 0..samples_per_axis {
                 let (x_px, y_px) = (f64::from(x) + within(column), f64::from(y) + within(row));
@@ -136,6 +147,8 @@ impl Scene {
                     hits += 1;
                     nearest = nearest.min(sight.distance);
                     farthest = farthest.max(sight.distance);
+                    lambert += sight.lambert;
+                    taken += if sight.shadowed { sight.lambert } else { 0.0 };
                 }
             }
         }
@@ -147,6 +160,12 @@ impl Scene {
             // The rays' directions have a component of 1 along the view's.
             nearest: (nearest * self.radius) as f32,
             farthest: (farthest * self.radius) as f32,
+            lambert: (lambert / f64::from(hits.max(1))) as f32,
+            shadow: if lambert > 0.0 {
+                (taken / lambert) as f32
+            } else {
+                0.0
+            },
         }
     }
 }
@@ -163,6 +182,8 @@ struct Pixel {
     coverage: f32,
     nearest: f32,
     farthest: f32,
+    lambert: f32,
+    shadow: f32,
 }
 
 /// Draws a scene with `samples_per_axis` squared rays a pixel (0 counts as 1),
@@ -196,6 +217,8 @@ pub fn render(
         coverage: pixels().map(|pixel| pixel.coverage).collect(),
         nearest: pixels().map(|pixel| pixel.nearest).collect(),
         farthest: pixels().map(|pixel| pixel.farthest).collect(),
+        lambert: pixels().map(|pixel| pixel.lambert).collect(),
+        shadow: pixels().map(|pixel| pixel.shadow).collect(),
     }
 }
 

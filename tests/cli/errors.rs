@@ -79,7 +79,9 @@ fn wrong_usage_is_exit_code_2() {
         "render cube.obj -o a.png --shadow-splat -1",
         "render cube.obj -o a.png --shadow-bias nan",
         "render cube.obj -o a.png --level 12",
-        "render scene.toml -o a.png",
+        "render scene.toml -o a.png --light 1,2,3",
+        "render scene.toml -o a.png --level 3",
+        "render cube.obj -o a.png --models .",
         "info",
         "compare a.png",
     ] {

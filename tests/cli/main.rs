@@ -5,6 +5,7 @@ mod compare;
 mod errors;
 mod quality;
 mod render;
+mod scene;
 
 use std::path::{Path, PathBuf};
 use std::process::Command;

@@ -7,6 +7,7 @@ use rhogrid_core::asset::Grid;
 use rhogrid_core::camera::{Camera, Orbit};
 use rhogrid_core::draw::{Light, Quality};
 use rhogrid_core::numbers::{FocalPx, Length, SplatPx, Turns, Unit, Weight};
+use rhogrid_core::shadow::Method;
 use rhogrid_core::target::Rect;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -64,6 +65,8 @@ pub struct Case {
     pub two_sided: bool,
     pub view: View,
     pub splat: SplatPx,
+    /// How the light casts shadows.
+    pub shadows: Method,
     /// Draw this part of the picture alone.
     pub band: Option<Rect>,
     /// The only surface shows its back.
@@ -115,6 +118,7 @@ const fn case(name: &'static str, model: Model, rho: u8, level: u8, view: View) 
         two_sided: false,
         view,
         splat: SplatPx::ONE,
+        shadows: Method::Off,
         band: None,
         is_empty: false,
         is_pictured: true,
@@ -255,5 +259,17 @@ pub const CASES: &[Case] = &[
     Case {
         band: Some(BAND),
         ..case("torus-band", Torus, 3, 3, view(30, FULL, SMALL))
+    },
+    Case {
+        shadows: Method::TwoPass,
+        ..case("demo-shadows", Demo, 3, 4, view(30, FULL, STANDARD))
+    },
+    Case {
+        shadows: Method::OnePass,
+        ..case("torus-shadows", Torus, 3, 3, view(120, FULL, HALF))
+    },
+    Case {
+        shadows: Method::OnePass,
+        ..case("torus-shadows-rho-4", Torus, 4, 2, view(120, FULL, SMALL))
     },
 ];

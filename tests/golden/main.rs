@@ -15,9 +15,10 @@ use std::sync::LazyLock;
 
 use rhogrid::asset_file::AssetFile;
 use rhogrid::bake::{self, GridOptions, writer};
-use rhogrid::cli::{Frame, draw_frame};
+use rhogrid::cli::{Frame, draw_frame, draw_shadowed};
 use rhogrid_core::asset::Shell;
 use rhogrid_core::draw::{draw, shades_len};
+use rhogrid_core::shadow::{Method, Shadows};
 use rhogrid_core::stats::Stats;
 use rhogrid_core::target::{Rect, Target, canvas_len};
 
@@ -58,6 +59,13 @@ fn draw_case(case: &Case) -> Frame {
     let grid = ASSETS[&recipe(case)].grid();
     let camera = case.view.camera(&grid);
     match case.band {
+        None if case.shadows != Method::Off => {
+            let shadows = Shadows {
+                method: case.shadows,
+                ..Shadows::default()
+            };
+            draw_shadowed(&grid, &camera, &light(), &quality(case), &shadows, 1)
+        }
         None => draw_frame(&grid, &camera, &light(), &quality(case), 1),
         Some(band) => {
             let (mut colour, mut depth) = (vec![0; band.pixels()], vec![0; band.pixels()]);

@@ -117,8 +117,11 @@ fn describe(measures: &ReferenceMeasures) -> String {
         0 => "of no pixel".into(),
         _ => decibels(measures.psnr_inside),
     };
+    let shadows = measures.shadow_errors.map_or(String::new(), |share| {
+        format!(", {:.2}% in the wrong shadow state", 100.0 * share)
+    });
     format!(
-        "psnr_inside {inside}, psnr {}, ssim {:.4}, rmse {:.2}, {} holes, {} see-through",
+        "psnr_inside {inside}, psnr {}, ssim {:.4}, rmse {:.2}, {} holes, {} see-through{shadows}",
         decibels(measures.frame.psnr),
         measures.frame.ssim,
         measures.frame.rmse,

@@ -2,16 +2,16 @@
 
 use rhogrid_core::numbers::Length;
 use rhogrid_core::scene::{Lighting, Scene as CoreScene};
-use rhogrid_core::shadow::Method;
+use rhogrid_core::shadow::{Method, Shadows};
 
 use super::super::Failure;
 use super::super::args::ShadowChoice;
-use super::super::frame::{core_camera, core_quality, core_shadows, draw_placed};
+use super::super::frame::{core_camera, core_quality, core_shadows, draw_placed, float_view};
 use super::super::scene::{ambient, grids, instances, lamps, load_scene, placements};
 use super::report::{Report, print};
-use super::{RenderArgs, draw_reference, output_at, trace, view_at};
+use super::{RenderArgs, draw_reference, edge_radius, output_at, trace, view_at};
 use crate::geometry::Geometry;
-use crate::measure::against_reference;
+use crate::measure::{SizeMismatch, against_reference, shadow_errors};
 use crate::reference;
 use crate::scene::Scene;
 use crate::view::Light;
@@ -104,11 +104,27 @@ fn draw(
     picture.save_png(&output)?;
     let measures = original.map(|(original, light)| {
         let reference = trace(&view, original, &scene.cube, light);
-        against_reference(&picture, None, &reference)
+        let mut measures = against_reference(&picture, None, &reference)?;
+        if content.shadows.method != Method::Off && light.casts {
+            let dark = Shadows {
+                method: Method::Off,
+                ..content.shadows
+            };
+            let without = CoreScene {
+                shadows: dark,
+                ..content
+            };
+            let lit = draw_placed(&without, &camera, &quality, 1).picture();
+            let view = float_view(&view, &scene.cube);
+            let radius = edge_radius(&view, &scene.cube, &content.shadows);
+            let errors = shadow_errors(&picture, &lit, &reference, radius)?;
+            measures.shadow_errors = Some(errors);
+        }
+        Ok(measures)
     });
     let measures = measures
         .transpose()
-        .map_err(|_| Failure::failed("sizes differ", "report this"))?;
+        .map_err(|_: SizeMismatch| Failure::failed("sizes differ", "report this"))?;
     let yaw = args.view.eye.is_none().then_some(view.yaw);
     let report = Report::new(output, yaw, &frame, args.frames, measures);
     print(args, &report)
