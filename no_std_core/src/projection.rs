@@ -45,6 +45,8 @@ use crate::target::Rect;
 const GUARD_BITS: i32 = 32;
 /// Magnitudes stay below two to this.
 const BLOCK_BITS: i32 = 30;
+/// What an edge of the cube is bounded by, block units of w, half of it.
+const MAX_HALF_SIDE: i64 = 1 << 31;
 /// The depth range is at most near:far = 1:2^7.
 const DEPTH_OCTAVES: u32 = 7;
 
@@ -69,7 +71,8 @@ pub(crate) struct Projection {
     pub near: i32,
     /// A block unit of w is 2^w_scale half sides.
     pub w_scale: i32,
-    /// The cube's half side in block units of w, rounded up.
+    /// The cube's half side in block units of w, rounded up, at most
+    /// [`MAX_HALF_SIDE`].
     pub half_side: i64,
     depth: DepthScale,
 }
@@ -179,7 +182,9 @@ impl Projection {
             middle: [middle(camera.width), middle(camera.height)],
             near: near as i32,
             w_scale,
-            half_side: shift_round(i128::from(sight.half_side.to_bits()), w_scale + 32) + 1,
+            half_side: shift_round(i128::from(sight.half_side.to_bits()), w_scale + 32)
+                .clamp(0, MAX_HALF_SIDE - 1)
+                + 1,
         }
     }
 

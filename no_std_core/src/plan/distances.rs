@@ -116,7 +116,7 @@ impl Distances {
 
 /// Half the diagonal of so many cells with an edge, rounded up.
 fn diagonal(edge: i64, cells: i64) -> i64 {
-    // sqrt(3) / 2 < 887 / 1024; edges are below 2^32, cells below 2^10.
+    // sqrt(3) / 2 < 887 / 1024; edges are at most 2^32, cells below 2^10.
     (((edge + 1) * cells * 887) >> 10) + 1
 }
 

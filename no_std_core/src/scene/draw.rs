@@ -20,7 +20,7 @@ pub struct Memory<'a> {
     /// [`crate::draw::shades_len`] words for the instance with the most
     /// materials. Where it is shorter, samples are shaded one by one.
     pub shades: &'a mut [u16],
-    /// [`Shadows::map_len`] words for each lamp that casts. Lamps for which it
+    /// [`crate::shadow::Shadows::map_len`] words for each lamp that casts. Lamps for which it
     /// is too short cast no shadows.
     pub shadows: &'a mut [u16],
 }

@@ -14,14 +14,17 @@ use rhogrid_frame::{Frame, MAX_INSTANCES, Materials, Placed, Settings};
 use crate::flow::Failure;
 
 /// What the draw call may write beside the picture.
-pub(crate) struct Memories<'a> {
+pub struct Memories<'a> {
+    /// The shade table.
     pub shades: &'a mut [u16],
+    /// Shadow maps.
     pub shadows: &'a mut [u16],
+    /// The canvas.
     pub canvas: &'a mut [u32],
 }
 
 /// The grids, where they stand, and their light.
-pub(crate) struct Content<'a> {
+pub struct Content<'a> {
     settings: Settings,
     grids: &'a [Option<Grid<'a>>],
     placed: [Option<(Placed, &'a Grid<'a>)>; MAX_INSTANCES],
@@ -32,6 +35,9 @@ pub(crate) struct Content<'a> {
 
 impl<'a> Content<'a> {
     /// Of a frame file, its assets opened.
+    ///
+    /// # Errors
+    /// When an instance is of no asset.
     pub fn new(frame: &Frame<'a>, grids: &'a [Option<Grid<'a>>]) -> Result<Self, Failure> {
         let mut content = Self {
             settings: frame.settings(),
@@ -63,6 +69,9 @@ impl<'a> Content<'a> {
     }
 
     /// What of the memory for shadow maps the lamps use.
+    ///
+    /// # Errors
+    /// When they want more.
     pub fn shadows<'m>(&self, memory: &'m mut [u16]) -> Result<&'m mut [u16], Failure> {
         let casting = self.lamps().iter().filter(|lamp| lamp.casts).count();
         let length = match self.settings.shadows.method {
@@ -103,6 +112,9 @@ impl<'a> Content<'a> {
 
     /// The draw call. Not inlined, so that all of its stack lies below the
     /// caller's frame.
+    ///
+    /// # Errors
+    /// When the buffers do not fit the picture.
     #[inline(never)]
     pub fn draw(
         &self,

@@ -30,7 +30,8 @@ mod board;
 mod content;
 mod flow;
 
-pub use board::{Board, Buffers, PIXELS, SHADES};
+pub use board::{Board, Buffers, PIXELS, SHADES, SHADOWS};
+pub use content::{Content, Memories};
 pub use flow::{Failure, run};
 
 /// Version of the printed lines.

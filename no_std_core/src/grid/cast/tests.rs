@@ -92,7 +92,7 @@ fn maps_are_those_of_all_cells() {
 }
 
 #[test]
-fn what_faces_away_is_left_out_with_what_is_below() {
+fn what_faces_away_casts_nothing_with_what_is_below() {
     let mut rng = Rng::with_seed(72);
     let mut fewer = 0;
     for case in 0..100 {
