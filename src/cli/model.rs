@@ -11,10 +11,13 @@ use crate::asset_file::AssetFile;
 use crate::bake::{self, GridOptions, Progress, writer};
 use crate::error::Error;
 use crate::geometry::{Geometry, Up};
-use crate::import;
+use crate::import::{self, procedural};
 
 /// Names the built-in scene where a file is asked for.
 pub const DEMO: &str = "builtin:demo";
+
+/// What names of built-in models begin with.
+const BUILT_IN: &str = "builtin:";
 
 /// An asset and its source.
 #[derive(Debug)]
@@ -61,10 +64,18 @@ pub fn is_asset(input: &Path) -> bool {
     by_name || magic().unwrap_or(false)
 }
 
-/// Loads a mesh or cloud, or makes the built-in scene, y up.
+/// Loads a mesh or cloud, or makes a built-in model, y up.
 pub fn load_geometry(input: &Path, up: Up) -> Result<Geometry, Error> {
-    if input == Path::new(DEMO) {
-        return Ok(Geometry::Mesh(import::procedural::demo()).turned(up));
+    if let Some(name) = input
+        .to_str()
+        .and_then(|input| input.strip_prefix(BUILT_IN))
+    {
+        let mesh = procedural::built_in(name).ok_or_else(|| {
+            let known = procedural::NAMES.map(|name| format!("{BUILT_IN}{name}"));
+            let remedy = format!("give {}", known.join(", "));
+            Error::file(input, "no such model is built in", remedy)
+        })?;
+        return Ok(Geometry::Mesh(mesh).turned(up));
     }
     let imported = import::load(input)?;
     for note in &imported.notes {

@@ -31,7 +31,8 @@ use report::{Report, print};
 /// Arguments of `rhogrid render`.
 #[derive(Debug, Args)]
 pub struct RenderArgs {
-    /// Asset (.rho), mesh or cloud (.obj, .ply), scene (.toml), or builtin:demo
+    /// Asset (.rho), mesh or cloud (.obj, .ply), scene (.toml), or builtin:demo,
+    /// builtin:tree-broad, builtin:tree-willow
     input: PathBuf,
     /// Picture to write; with --orbit, OUT-000.png and so on
     #[arg(short, long, value_name = "OUT.png")]

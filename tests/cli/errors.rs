@@ -119,6 +119,10 @@ fn missing_and_foreign_inputs_are_named() {
             "info none.rho",
             &["none.rho: ", "cannot be read", "; check"],
         ),
+        (
+            "bake builtin:tree -o a.rho",
+            &["builtin:tree: ", "built in", "; give builtin:demo, "],
+        ),
         ("info empty.rho", &["empty.rho: ", "byte 0", "; "]),
         ("info text.rho", &["text.rho: ", "byte 0", "rhogrid bake"]),
         (

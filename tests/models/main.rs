@@ -188,3 +188,21 @@ fn prefixes_of_the_cow_are_coarser_cows() {
         }
     }
 }
+
+#[test]
+fn the_big_scene_has_true_shadows() {
+    let Some(models) = folder() else { return };
+    let root = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
+    let scene = root.join("scenes/big.toml");
+    let options = format!(
+        "--models {} --distance 1.7 --orbit 2 --frames 1 --compare",
+        models.display()
+    );
+    // An absolute path stays as it is when it is joined.
+    let reports = run("render", &scene.to_string_lossy(), &options).expect("there are models");
+    let errors = numbers(&reports, "shadow_errors");
+    println!("big scene: shadow errors {errors:?}");
+    assert!(errors.iter().all(|&share| share <= 0.02), "{errors:?}");
+    let passes = numbers(&reports, "shadow_passes");
+    assert_eq!(passes, [0.0, 0.0], "one pass");
+}

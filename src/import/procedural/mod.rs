@@ -14,6 +14,7 @@ mod plinth;
 mod rings;
 pub mod shapes;
 mod shell;
+mod tree;
 
 use glam::DVec3;
 
@@ -59,13 +60,35 @@ pub fn demo() -> Mesh {
         turn: 0.5,
     };
     shell::ammonite(&mut builder, &placement);
-    builder.mesh.materials = PALETTE
-        .map(|(name, diffuse)| Material {
-            name: name.to_owned(),
-            diffuse,
-        })
-        .into();
-    builder.mesh
+    painted(builder, &PALETTE)
+}
+
+/// Names of models that are built in.
+pub const NAMES: [&str; 3] = ["demo", "tree-broad", "tree-willow"];
+
+/// A model of [`NAMES`]; trees have leaves of one sheet and want to be drawn
+/// from both sides.
+pub fn built_in(name: &str) -> Option<Mesh> {
+    let grow = match name {
+        "demo" => return Some(demo()),
+        "tree-broad" => tree::broad,
+        "tree-willow" => tree::willow,
+        _ => return None,
+    };
+    let mut builder = Builder::default();
+    grow(&mut builder);
+    Some(painted(builder, &tree::PALETTE))
+}
+
+fn painted(builder: Builder, palette: &[(&str, [u8; 3])]) -> Mesh {
+    let material = |&(name, diffuse): &(&str, [u8; 3])| Material {
+        name: name.to_owned(),
+        diffuse,
+    };
+    Mesh {
+        materials: palette.iter().map(material).collect(),
+        ..builder.mesh
+    }
 }
 
 #[cfg(test)]
@@ -231,6 +254,31 @@ mod tests {
             "{}",
             mesh.triangles.len()
         );
+    }
+
+    /// Limbs are solid, leaves single sheets, and everything stands on y = 0.
+    #[test]
+    fn trees_are_sound() {
+        for (name, print, leaves) in [
+            ("tree-broad", 0xA863_C528, 26_244),
+            ("tree-willow", 0x1844_80FF, 26_730),
+        ] {
+            let mesh = built_in(name).expect(name);
+            check(&mesh);
+            let of = |material: u8| {
+                let triangles = mesh.triangles.iter().filter(|t| t.material == material);
+                Mesh {
+                    triangles: triangles.cloned().collect(),
+                    ..mesh.clone()
+                }
+            };
+            check_closed(&of(0));
+            assert_eq!(of(1).triangles.len(), 2 * leaves, "{name}");
+            let lowest = mesh.positions.iter().map(|p| p.y).fold(f64::MAX, f64::min);
+            assert!((-0.05..=0.0).contains(&lowest), "{name}: {lowest}");
+            assert_eq!(fingerprint(&mesh), print, "{name}");
+        }
+        assert!(built_in("tree").is_none());
     }
 
     #[test]
