@@ -80,6 +80,7 @@ extern crate std;
 pub mod asset;
 pub mod camera;
 mod canvas;
+mod divisor;
 pub mod draw;
 mod grid;
 pub mod normal;

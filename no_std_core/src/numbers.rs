@@ -72,6 +72,28 @@ fn clamp_i64(value: i128) -> i64 {
     value.clamp(i128::from(i64::MIN), i128::from(i64::MAX)) as i64
 }
 
+/// The square root of a number, rounded up: at most one and 2^-30 of it more.
+pub(crate) fn root_up(square: u128) -> u64 {
+    let (narrow, half_shift) = narrow_square(square);
+    (narrow.isqrt() + 1) << half_shift
+}
+
+/// The square root of a third of a number, rounded up in the same way.
+pub(crate) fn third_root_up(square: u128) -> u64 {
+    let (narrow, half_shift) = narrow_square(square);
+    (narrow.div_ceil(3).isqrt() + 1) << half_shift
+}
+
+/// A number over an even power of two, rounded up, in 62 bits; and half of that
+/// power.
+fn narrow_square(square: u128) -> (u64, i32) {
+    let half_shift = ((bit_length(square) - 61) / 2).max(0);
+    match half_shift {
+        0 => (square as u64, 0),
+        _ => ((square >> (2 * half_shift)) as u64 + 1, half_shift),
+    }
+}
+
 /// Bits needed for a magnitude: 0 for 0, else the index of its highest set
 /// bit plus one. A binary search of shifts; no CLZ is assumed.
 pub(crate) const fn bit_length(value: u128) -> i32 {

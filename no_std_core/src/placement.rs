@@ -6,8 +6,9 @@
 //! orientation leaves as it is: (n A^-1) . (A p - A e) = n . (p - e).
 
 use crate::camera::Camera;
+use crate::divisor::Divisor;
 use crate::normal::decode;
-use crate::numbers::{Length, Turns, Unit, bit_length};
+use crate::numbers::{Length, Turns, Unit, bit_length, root_up, third_root_up};
 use crate::projection::{Row, Sight};
 use crate::trig::sin_cos;
 
@@ -81,27 +82,27 @@ impl Placement {
     /// The longest edge of what the half cube becomes; not less than what makes
     /// its longest diagonal sqrt(3) times as long.
     pub(crate) fn half_side(&self) -> Length {
-        let [a, b, c] = self.axes.map(bits);
+        // Halves: their sums fit.
+        let halves = self.axes.map(|axis| bits(axis).map(|c| c >> 1));
+        let [a, b, c] = halves;
         let sum = |signs: [i64; 2]| [0, 1, 2].map(|at| a[at] + signs[0] * b[at] + signs[1] * c[at]);
-        let diagonals =
-            [[1, 1], [1, -1], [-1, 1], [-1, -1]].map(|signs| square(sum(signs)).div_ceil(3));
-        let edges = [a, b, c].map(square);
+        let diagonals = [[1, 1], [1, -1], [-1, 1], [-1, -1]].map(|signs| square(sum(signs)));
+        let edges = halves.map(|half| 3 * square(half));
         let longest = diagonals.into_iter().chain(edges).fold(0, u128::max);
-        // Rounded up.
-        let root = longest.isqrt();
-        Length::from_bits((root + u128::from(root * root < longest)) as i64)
+        // Two for what the halves have lost.
+        let root = 2 * third_root_up(longest) + 2;
+        Length::from_bits(root.min(1 << 62) as i64)
     }
 
     /// Radius of the placed grid around its origin, given that in model space.
     pub(crate) fn radius(&self, model: Length) -> Length {
         // The map's norm is at most that of its longest axes together.
         let squares = self.axes.map(|axis| square(bits(axis)));
-        let longest = squares.into_iter().fold(0, u128::max).isqrt();
-        let norm = match self.is_similar() {
-            true => longest,
-            false => squares.into_iter().sum::<u128>().isqrt(),
-        };
-        let wide = (norm + 1) * u128::from(model.to_bits().unsigned_abs());
+        let norm = root_up(match self.is_similar() {
+            true => squares.into_iter().fold(0, u128::max),
+            false => squares.into_iter().sum::<u128>(),
+        });
+        let wide = u128::from(norm + 1) * u128::from(model.to_bits().unsigned_abs());
         Length::from_bits((wide >> 32).min(1 << 62) as i64 + 1)
     }
 
@@ -121,8 +122,9 @@ impl Placement {
 pub(crate) struct Inverse {
     /// Rows of the axes' adjugate, which are their normals: below 2^48.
     pub rows: [[i64; 3]; 3],
-    /// The inverse is the rows over this ...
-    determinant: i128,
+    /// The inverse is the rows times the determinant's sign over this ...
+    volume: Divisor,
+    is_mirrored: bool,
     /// ... times two to this.
     shift: i32,
 }
@@ -144,7 +146,8 @@ impl Inverse {
         let down = bit_length(largest) - 47;
         Some(Self {
             rows: crossed.map(|row| row.map(|c| shifted(c, down) as i64)),
-            determinant: volume,
+            volume: Divisor::new(volume.abs()),
+            is_mirrored: volume < 0,
             // rows 2^down / volume is the inverse of axes 2^-scale, whose unit is
             // 2^-32.
             shift: down - scale + 32,
@@ -155,21 +158,19 @@ impl Inverse {
     pub fn point(&self, vector: [i64; 3]) -> [Length; 3] {
         self.rows.map(|row| {
             // 2^47 x 2^62 and two bits.
-            let sum = dot(row, vector);
-            // All of the quotient's bits, and as many of the determinant's as
-            // leave it 31.
-            let room = 126 - bit_length(sum.unsigned_abs());
-            let up = room.min(bit_length(self.determinant.unsigned_abs()).max(64));
-            let divisor = self.determinant;
-            let quotient = shifted(sum, -up).checked_div(divisor).unwrap_or(0);
-            Length::from_bits(crate::numbers::shift_round(quotient, up - self.shift))
+            let sum = i128::from(self.sign()) * dot(row, vector);
+            Length::from_bits(self.volume.quotient(sum, self.shift))
         })
+    }
+
+    fn sign(&self) -> i64 {
+        if self.is_mirrored { -1 } else { 1 }
     }
 
     /// A world direction in model space, times any positive factor, below 2^30;
     /// zero for zero.
     pub fn direction(&self, vector: [Unit; 3]) -> [i32; 3] {
-        let sign = self.determinant.signum();
+        let sign = i128::from(self.sign());
         let wide = self.rows.map(|row| {
             let products = row.iter().zip(vector);
             let sum: i128 = products
@@ -193,7 +194,7 @@ pub(crate) struct NormalMap {
 impl NormalMap {
     pub fn new(placement: &Placement, inverse: Inverse) -> Self {
         let rows = (!placement.is_similar()).then(|| {
-            let sign = inverse.determinant.signum() as i64;
+            let sign = inverse.sign();
             // The adjugate's columns are normals of the map's sides.
             let largest = inverse.rows.iter().flatten().map(|c| c.unsigned_abs());
             let down = bit_length(u128::from(largest.fold(0, u64::max))) - 14;

@@ -3,15 +3,18 @@
 use super::{Instance, MAX_LAMPS, Scene, order};
 use crate::camera::Camera;
 use crate::canvas::Canvas;
+use crate::divisor::Divisor;
 use crate::draw::Quality;
 use crate::grid::{cast, traverse, traverse_and_cast};
-use crate::numbers::{Length, SplatPx, Unit, shift_round};
+use crate::numbers::{Length, SplatPx, Unit};
 use crate::placement::{Inverse, NormalMap};
 use crate::plan::Plan;
 use crate::projection::{DepthToW, Projection, Sight};
 use crate::resolve::{Shadowed, merge};
 use crate::shade::Shader;
-use crate::shadow::{CastForms, LightSpace, Map, Method, Receiver, Sphere, bias, edge};
+use crate::shadow::{
+    CastForms, LightSpace, Map, Method, PictureForms, Receiver, Sphere, bias, edge,
+};
 use crate::stats::Stats;
 use crate::target::{Layers, blank};
 
@@ -35,7 +38,7 @@ pub fn draw_scene(
     target: &mut Layers<'_>,
 ) -> Stats {
     let mut stats = Stats::default();
-    let mut maps = Maps::new(scene, memory.shadows);
+    let mut maps = Maps::new(scene, camera, memory.shadows);
     let order = one_pass_order(scene, &maps, target);
     if order.is_none() {
         maps.cast(scene, &mut stats);
@@ -167,8 +170,8 @@ impl InstanceFrame<'_> {
         let leaf = edge(space, self.instance.placement.half_side()).checked_div(cells);
         let w = (self.sight.rows[2].0 >> 30).max(0);
         let splat = w * i128::from(self.quality.splat.max(SplatPx::ONE).to_bits()) / 2;
-        let splat = (splat << 16).checked_div(i128::from(self.camera.focal_px.to_bits().max(1)));
-        let splat = Length::from_bits(shift_round(splat.unwrap_or(0), 0).clamp(0, 1 << 40));
+        let focal = Divisor::new(i128::from(self.camera.focal_px.to_bits()));
+        let splat = Length::from_bits(focal.quotient(splat, 16).clamp(0, 1 << 40));
         leaf.unwrap_or(0).max(edge(space, splat))
     }
 }
@@ -182,13 +185,14 @@ struct Maps<'m> {
 struct LampMap<'m> {
     towards: [Unit; 3],
     space: LightSpace,
+    picture: PictureForms,
     depths: &'m mut [u16],
     slopes: &'m mut [u16],
 }
 
 impl<'m> Maps<'m> {
     /// Clear maps.
-    fn new(scene: &Scene<'_>, memory: &'m mut [u16]) -> Self {
+    fn new(scene: &Scene<'_>, camera: &Camera, memory: &'m mut [u16]) -> Self {
         let mut maps = [const { None }; MAX_LAMPS];
         if scene.shadows.method == Method::Off {
             return Self { maps };
@@ -209,9 +213,11 @@ impl<'m> Maps<'m> {
                 break;
             };
             blank(depths);
+            let space = LightSpace::new(lamp.towards, sphere, size);
             *map = Some(LampMap {
                 towards: lamp.towards,
-                space: LightSpace::new(lamp.towards, sphere, size),
+                picture: PictureForms::new(&space, camera),
+                space,
                 depths,
                 slopes,
             });
@@ -241,12 +247,12 @@ impl<'m> Maps<'m> {
         to_w: &'r DepthToW,
         cell: impl Fn(&LightSpace) -> u64,
     ) -> [Option<Receiver<'r>>; MAX_LAMPS] {
-        let view = (frame.camera, &frame.projection, to_w);
         let shadows = &frame.scene.shadows;
         self.maps.each_mut().map(|map| {
             let map = map.as_mut()?;
             let (forms, _) = map.forms(frame.scene, frame.instance, &frame.normals);
             let bias = bias(&map.space, &forms, cell(&map.space), shadows.bias);
+            let view = (&map.picture, &frame.projection, to_w);
             let memory = (&*map.depths, &mut *map.slopes);
             Receiver::new(&map.space, memory, &frame.normals, view, bias)
         })

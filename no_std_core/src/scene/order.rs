@@ -80,9 +80,8 @@ impl Solid {
         let origin = space.relative_to_middle(placement.origin);
         let rows = space.axes.map(|axis| placement.row(axis, origin));
         let unit = |length: i128| -> i64 {
-            let share = (length >> 30) * i128::from(RADIUS);
-            let share = share.checked_div(i128::from(space.radius())).unwrap_or(0);
-            share.clamp(-(1 << 20), 1 << 20) as i64
+            let share = space.over_radius((length >> 30) * i128::from(RADIUS), 0);
+            share.clamp(-(1 << 20), 1 << 20)
         };
         let extents = instance.grid.extents().map(|extent| extent.to_bits());
         let mut halves = [[0; 3]; 3];

@@ -113,10 +113,6 @@ impl CastForms {
 /// Twice a length, an edge's half, in texels, Q16.
 pub(crate) fn edge(space: &LightSpace, half: Length) -> u64 {
     let [texels, ..] = space.reaches();
-    // 62 + 11 + 17 bits.
-    let half = u128::from(half.to_bits().unsigned_abs());
-    let wide = (half * u128::from(texels.unsigned_abs())) << 17;
-    let radius = u128::from(space.radius().unsigned_abs());
-    let edge = wide.checked_div(radius).unwrap_or(0);
-    edge.min(1 << 40) as u64
+    let wide = i128::from(half.to_bits()) * i128::from(texels);
+    space.over_radius(wide, 17).clamp(0, 1 << 40) as u64
 }

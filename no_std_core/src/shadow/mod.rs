@@ -14,7 +14,7 @@ mod receive;
 mod space;
 
 pub(crate) use map::{CastForms, Map, PITCH, WINDOW, WINDOW_SIDE, edge};
-pub(crate) use receive::{Receiver, Row, bias};
+pub(crate) use receive::{PictureForms, Receiver, Row, bias};
 pub(crate) use space::{DEPTH_BITS, LightSpace, Sphere, TEXEL_BITS};
 
 use crate::normal::CODES;

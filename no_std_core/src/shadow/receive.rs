@@ -21,8 +21,9 @@
 use super::map::CastForms;
 use super::space::LightSpace;
 use crate::camera::Camera;
+use crate::divisor::Divisor;
 use crate::normal::{CODES, OCTANT, OCTANT_CODES};
-use crate::numbers::{SplatPx, Unit, bit_length, shift_round};
+use crate::numbers::{SplatPx, Unit, bit_length};
 use crate::placement::NormalMap;
 use crate::projection::{DepthToW, Projection};
 
@@ -85,7 +86,7 @@ impl<'a> Receiver<'a> {
         space: &LightSpace,
         (depths, slopes): (&'a [u16], &'a mut [u16]),
         normals: &NormalMap,
-        (camera, projection, to_w): (&Camera, &Projection, &'a DepthToW),
+        (picture, projection, to_w): (&PictureForms, &Projection, &'a DepthToW),
         bias: [i32; 2],
     ) -> Option<Self> {
         let slopes: &mut [u8] = bytemuck::cast_slice_mut(slopes);
@@ -95,7 +96,7 @@ impl<'a> Receiver<'a> {
             depths,
             slopes,
             size: u32::from(space.size),
-            rays: rays(space, camera, projection),
+            rays: picture.rays(space, projection),
             to_w,
             bias,
         })
@@ -213,66 +214,99 @@ static TANGENTS: [u8; 512] = {
     table
 };
 
-fn rays(space: &LightSpace, camera: &Camera, projection: &Projection) -> [Ray; 3] {
-    let bits = [TEXEL_BITS, TEXEL_BITS, DEPTH_BITS];
-    let middle = i64::from(space.size) << (TEXEL_BITS - 1);
-    let middles = [middle, middle, 1 << (15 + DEPTH_BITS)];
-    let radius = i128::from(space.radius());
-    let focal = i128::from(camera.focal_px.to_bits().max(1));
-    let from_middle = space.relative_to_middle(camera.eye);
-    let mut rays = [Ray::default(); 3];
-    let parts = space
-        .axes
-        .iter()
-        .zip(space.reaches())
-        .zip(middles)
-        .zip(bits);
-    for (ray, (((axis, reach), middle), bits)) in rays.iter_mut().zip(parts) {
-        let along = |v: [Unit; 3]| -> i128 {
+/// Light space over a picture's pixels: what all instances' rays come from.
+#[derive(Clone, Copy)]
+pub(crate) struct PictureForms {
+    /// u, v and depth.
+    forms: [PictureForm; 3],
+}
+
+#[derive(Clone, Copy, Default)]
+struct PictureForm {
+    /// At the eye.
+    eye: i32,
+    /// At the corner and from column to column and row to row, for each unit of
+    /// w: times the sphere's radius and the map's reach, Q60.
+    parts: [i128; 3],
+    /// Bits of the largest over all pixels, over the radius, Q60.
+    length: i32,
+    /// Fraction bits of what comes out.
+    bits: i32,
+}
+
+impl PictureForms {
+    pub fn new(space: &LightSpace, camera: &Camera) -> Self {
+        let focal = Divisor::new(i128::from(camera.focal_px.to_bits()));
+        let bits = [TEXEL_BITS, TEXEL_BITS, DEPTH_BITS];
+        let middle = i64::from(space.size) << (TEXEL_BITS - 1);
+        let middles = [middle, middle, 1 << (15 + DEPTH_BITS)];
+        let mut forms = [PictureForm::default(); 3];
+        let parts = space.axes.into_iter().zip(space.reaches());
+        let parts = parts.zip(middles).zip(bits);
+        for (form, (((axis, reach), middle), bits)) in forms.iter_mut().zip(parts) {
+            *form = PictureForm::new(space, (axis, reach), camera, &focal, (middle, bits));
+        }
+        Self { forms }
+    }
+
+    fn rays(&self, space: &LightSpace, projection: &Projection) -> [Ray; 3] {
+        self.forms.map(|form| form.ray(space, projection))
+    }
+}
+
+impl PictureForm {
+    fn new(
+        space: &LightSpace,
+        (axis, reach): ([Unit; 3], i64),
+        camera: &Camera,
+        focal: &Divisor,
+        (middle, bits): (i64, i32),
+    ) -> Self {
+        let along = |v: [i64; 3]| -> i128 {
             let products = axis.iter().zip(v);
             products
-                .map(|(a, b)| i128::from(a.to_bits()) * i128::from(b.to_bits()))
+                .map(|(a, b)| i128::from(a.to_bits()) * i128::from(b))
                 .sum()
         };
-        // Q60, in a radius; below 2^66.
-        let per_pixel = |v: [Unit; 3]| {
-            let wide = (along(v) << 32).checked_div(focal).unwrap_or(0);
-            wide.clamp(-(1 << 66), 1 << 66)
-        };
+        let unit = |v: [Unit; 3]| along(v.map(|c| i64::from(c.to_bits())));
+        // Q60; a pixel of more than eight units is no pixel.
+        let per_pixel = |v: [Unit; 3]| i128::from(focal.quotient(unit(v), 32));
         let (right, down) = (per_pixel(camera.right), -per_pixel(camera.up));
         let [width, height] = [camera.width, camera.height].map(i128::from);
         let across = right * (width - 1) + down * (height - 1);
-        let corner = along(camera.forward) - across / 2;
-        // In a world unit, then in a block unit of w.
-        let in_unit = |part: i128| {
-            let wide = part * i128::from(reach) * (1 << 32);
-            wide.checked_div(radius).unwrap_or(0)
-        };
-        let parts = [corner, right, down].map(in_unit);
+        let corner = unit(camera.forward) - across / 2;
+        let parts = [corner, right, down].map(|part| part * i128::from(reach));
         let largest = parts[0].abs() + parts[1].abs() * width + parts[2].abs() * height;
-        let down = bit_length(largest.unsigned_abs()) - 30;
-        let shift = (60 - 32 - bits - projection.w_scale - down).clamp(0, 31);
-        let down = 60 - 32 - bits - projection.w_scale - shift;
-        let [corner, column, row] = parts.map(|part| {
-            let part = shift_round(part, down);
+        // In about 60 bits, to count them.
+        let radius = u128::from(space.radius().unsigned_abs());
+        let scale = 60 - bit_length(largest.unsigned_abs()) + bit_length(radius);
+        let largest = space.over_radius(largest, scale);
+        let eye = along(space.relative_to_middle(camera.eye)) * i128::from(reach);
+        let eye = space.over_radius(eye, bits - 30).saturating_add(middle);
+        Self {
+            eye: eye.clamp(-(1 << 30), 1 << 30) as i32,
+            parts,
+            length: bit_length(u128::from(largest.unsigned_abs())) - scale + 32,
+            bits,
+        }
+    }
+
+    /// For each block unit of w.
+    fn ray(&self, space: &LightSpace, projection: &Projection) -> Ray {
+        // From Q60 for a unit to what a block unit is times 2^32.
+        let all = 60 - 32 - self.bits - projection.w_scale;
+        let shift = (all - (self.length - 30)).clamp(0, 31);
+        let [corner, column, row] = self.parts.map(|part| {
+            let part = space.over_radius(part, 32 - (all - shift));
             part.clamp(-(1 << 30), 1 << 30) as i32
         });
-        let eye: i128 = {
-            let products = axis.iter().zip(from_middle);
-            let sum: i128 = products
-                .map(|(a, b)| i128::from(a.to_bits()) * i128::from(b))
-                .sum();
-            (sum * i128::from(reach)).checked_div(radius).unwrap_or(0)
-        };
-        let eye = shift_round(eye, 30 - bits).saturating_add(middle);
-        *ray = Ray {
-            eye: eye.clamp(-(1 << 30), 1 << 30) as i32,
+        Ray {
+            eye: self.eye,
             corner,
             steps: [column, row],
             shift,
-        };
+        }
     }
-    rays
 }
 
 /// The bias that a map's squares ask for, and a picture whose cells have edges
@@ -286,8 +320,9 @@ pub(crate) fn bias(space: &LightSpace, cast: &CastForms, cell: u64, factor: Spla
     let factor = i64::from(factor.to_bits()).min(1 << 24);
     // Texels Q16, times Q16, to Q4 steps of depth.
     let in_steps = |texels_q16: i64| {
-        let wide = i128::from(texels_q16) * i128::from(factor) * i128::from(steps);
-        (wide.checked_div(i128::from(texels)).unwrap_or(0) >> 28).min(1 << 20) as i32
+        // 32 + 24 + 15 bits: the lowest are of no weight.
+        let wide = (texels_q16 * factor >> 20) * steps;
+        (wide.checked_div(texels).unwrap_or(0) >> 8).min(1 << 20) as i32
     };
     [in_steps(along) + 16, in_steps(across) / TANGENT_ONE as i32]
 }

@@ -5,7 +5,8 @@
 //! free for squares at its rim; its nearest point has the depth 32768 +
 //! [`DEPTH_REACH`], its farthest 32768 - [`DEPTH_REACH`].
 
-use crate::numbers::{Length, Unit, shift_round};
+use crate::divisor::Divisor;
+use crate::numbers::{Length, Unit, root_up, shift_round};
 use crate::placement::Placement;
 use crate::projection::{Form, Row};
 use crate::scene::Instance;
@@ -59,7 +60,7 @@ impl Sphere {
                 let apart = i128::from(a.to_bits()) - i128::from(b.to_bits());
                 (apart * apart).unsigned_abs()
             });
-            let apart = apart.sum::<u128>().isqrt().min(1 << 62) as i64;
+            let apart = root_up(apart.sum()).min(1 << 62) as i64;
             radius.saturating_add(Length::from_bits(apart))
         });
         Self {
@@ -75,6 +76,7 @@ pub(crate) struct LightSpace {
     /// Along u and v, and towards the light; world, at right angles.
     pub axes: [[Unit; 3]; 3],
     sphere: Sphere,
+    per_radius: Divisor,
     /// Texels along a side of the map.
     pub size: u16,
 }
@@ -98,6 +100,7 @@ impl LightSpace {
         Self {
             axes: [u, v.map(|c| Unit::from_bits((c >> 30) as i32)), towards],
             sphere,
+            per_radius: Divisor::new(i128::from(sphere.radius.to_bits())),
             size,
         }
     }
@@ -121,7 +124,7 @@ impl LightSpace {
         let parts = rows.iter().zip(self.reaches()).zip(middles).zip(bits);
         for (form, (((row, reach), middle), bits)) in forms.iter_mut().zip(parts) {
             let scaled = |part: i128| {
-                let wide = self.share(part) * i128::from(reach);
+                let wide = i128::from(self.share(part)) * i128::from(reach);
                 shift_round(wide, SHARE_BITS - bits - GUARD_BITS)
             };
             let (centre, axes): Row = *row;
@@ -135,12 +138,14 @@ impl LightSpace {
 
     /// A length with 62 fraction bits as a share of the sphere's radius, at most
     /// two to either side.
-    fn share(&self, length: i128) -> i128 {
-        let radius = i128::from(self.sphere.radius.to_bits().max(1));
-        let limit = radius << 31;
-        (length.clamp(-limit, limit) << 30)
-            .checked_div(radius)
-            .unwrap_or(0)
+    fn share(&self, length: i128) -> i64 {
+        let limit = i128::from(self.radius()) << 31;
+        self.over_radius(length.clamp(-limit, limit), 30)
+    }
+
+    /// `length / radius * 2^scale`, saturated.
+    pub fn over_radius(&self, length: i128, scale: i32) -> i64 {
+        self.per_radius.quotient(length, scale)
     }
 
     /// From the sphere's middle to a point.

@@ -115,7 +115,8 @@ fn pixels_find_their_place() {
         let identity = Inverse::of(&Placement::IDENTITY).expect("has volume");
         let normals = NormalMap::new(&Placement::IDENTITY, identity);
         let to_w = DepthToW::new(&projection);
-        let view = (&camera, &projection, &to_w);
+        let picture = PictureForms::new(&space, &camera);
+        let view = (&picture, &projection, &to_w);
         let receiver = Receiver::new(&space, (&[], slopes), &normals, view, [0; 2]);
         let receiver = receiver.expect("all slopes");
         // The pixel that looks at the point, and what its own ray meets there.
