@@ -46,6 +46,8 @@ pub struct Mesh {
     pub triangles: Vec<Triangle>,
     /// One to eight materials.
     pub materials: Vec<Material>,
+    /// Whether back faces are seen, whatever is asked for: leaves, say.
+    pub two_sided: bool,
 }
 
 /// A point of an oriented cloud.
@@ -62,6 +64,8 @@ pub struct OrientedPoint {
 pub struct Cloud {
     /// The points.
     pub points: Vec<OrientedPoint>,
+    /// Whether backs are seen, whatever is asked for: normals of unknown sign.
+    pub two_sided: bool,
 }
 
 /// What an input file holds.
@@ -175,6 +179,14 @@ impl Geometry {
                 corners.map(|at| mesh.positions[at as usize]).collect()
             }
             Self::Cloud(cloud) => cloud.points.iter().map(|point| point.position).collect(),
+        }
+    }
+
+    /// Whether it is seen from both sides, whatever is asked for.
+    pub fn two_sided(&self) -> bool {
+        match self {
+            Self::Mesh(mesh) => mesh.two_sided,
+            Self::Cloud(cloud) => cloud.two_sided,
         }
     }
 

@@ -13,6 +13,7 @@ pub mod error;
 pub mod geometry;
 pub mod import;
 pub mod measure;
+mod nearest;
 pub mod output;
 pub mod picture;
 pub mod reference;

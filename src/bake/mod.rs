@@ -45,7 +45,7 @@ pub struct GridOptions {
     pub shell: Shell,
     /// Which normals intermediate samples have.
     pub normals: Normals,
-    /// Draw every surface from both sides.
+    /// Draw every surface from both sides, as geometry may demand by itself.
     pub two_sided: bool,
     /// Which source axis points up; the geometry is already turned, the asset
     /// remembers it.
@@ -101,6 +101,10 @@ pub fn grid(
     options: &GridOptions,
     progress: &(dyn Fn(Progress) + Sync),
 ) -> Result<BakedGrid, Error> {
+    let options = &GridOptions {
+        two_sided: options.two_sided || geometry.two_sided(),
+        ..*options
+    };
     let depth = depth_of(options)?;
     let cube = Cube::of(geometry)?;
     let grid = match geometry {

@@ -5,13 +5,14 @@
 //! OBJ text  -> obj::scan -> tobj -+
 //!                                 +-> Polygons -> polygon, normals, materials -> Mesh
 //! PLY bytes -> ply::header, body -+
-//!                                 +-> Cloud
+//!                                 +-> Cloud, normals estimated where absent
 //! ```
 //!
 //! No input makes a reader panic, and no input loads silently empty. Equal
 //! bytes give equal geometry on every machine: only correctly rounded
 //! operations are used.
 
+mod estimate;
 mod materials;
 mod normals;
 mod obj;
@@ -45,10 +46,11 @@ pub struct Imported {
 
 /// Loads a model file, and the MTL files it names.
 ///
-/// Positions are `f64`; positions of equal bits become one, and those that no
+/// Positions are `f64`; a mesh's of equal bits become one, and those that no
 /// face uses are dropped. Polygons are cut into triangles. Normals come from
 /// the file, or else from the faces around a position within
-/// [`CREASE_COSINE`]. Colours come from the diffuse colour of materials
+/// [`CREASE_COSINE`]. A file without faces is a cloud; where it has no normals
+/// they are estimated, and it is two-sided if they tell no outside. Colours come from the diffuse colour of materials
 /// ([`MAX_MATERIALS`] at most); textures and vertex colours are not used.
 ///
 /// # Errors

@@ -6,7 +6,8 @@
 //! corners for a triangle, and stops at a `\`) sees only what it reads right.
 //! tobj parses numbers, resolves materials and splits the file into models;
 //! faces come back uncut, in file order, and are joined to one mesh. Groups,
-//! smoothing groups, texture coordinates and vertex colours are not used.
+//! smoothing groups, texture coordinates and vertex colours are not used. A file
+//! of vertices alone is a cloud.
 
 mod lines;
 mod mtl;
@@ -20,7 +21,7 @@ use glam::DVec3;
 use self::scan::{FaceLine, Scan};
 use super::normals::NO_NORMAL;
 use super::surface::{Corner, Face, Polygons, count, mesh};
-use super::{Imported, shown};
+use super::{Imported, estimate, shown};
 use crate::error::{Error, Place};
 use crate::geometry::{Geometry, Material};
 
@@ -34,7 +35,7 @@ const LIBRARY: &str = "mtllib materials\n";
 pub(super) fn read(file: &Path, bytes: &[u8]) -> Result<Imported, Error> {
     let scan = scan::scan(file, &lines::text(bytes))?;
     if scan.face_lines.is_empty() {
-        return Err(without_faces(file, &scan));
+        return points(file, &scan);
     }
     let mut notes = Vec::new();
     let mtl = mtl::libraries(file, &scan.libraries, &mut notes)?;
@@ -58,17 +59,44 @@ pub(super) fn read(file: &Path, bytes: &[u8]) -> Result<Imported, Error> {
     })
 }
 
-fn without_faces(file: &Path, scan: &Scan) -> Error {
+/// A file without faces: a cloud, unless it has lines.
+fn points(file: &Path, scan: &Scan) -> Result<Imported, Error> {
     if scan.vertices == 0 {
         let what = "no vertices and no faces";
-        return Error::file(file, what, "is this a Wavefront OBJ model? export it again");
+        let remedy = "is this a Wavefront OBJ model? export it again";
+        return Err(Error::file(file, what, remedy));
     }
-    let what = format!(
-        "nothing to draw: {} but no faces",
-        count(scan.vertices, "vertex")
-    );
-    let remedy = "convert point clouds to PLY with normals (nx ny nz); OBJ cannot pair them";
-    Error::file(file, what, remedy)
+    if let Some((_, line)) = scan.unused.get("l") {
+        let what = "nothing to draw: lines but no faces";
+        let remedy = "export faces, or the vertices alone: a point cloud";
+        return Err(Error::at(file, Place::Line(*line), what, remedy));
+    }
+    let mut notes = Vec::new();
+    note_unused(scan, &[], &mut notes);
+    let normals = scan.points.lines().filter(|line| line.starts_with("vn"));
+    match normals.count() {
+        0 => {}
+        normals => notes.push(format!(
+            "{} not used: OBJ does not pair them with points; PLY does (nx ny nz)",
+            count(normals, "normal")
+        )),
+    }
+    let positions: Vec<DVec3> = scan.points.lines().filter_map(position).collect();
+    let cloud = estimate::cloud(file, &positions, &mut notes)?;
+    Ok(Imported {
+        geometry: Geometry::Cloud(cloud),
+        notes,
+    })
+}
+
+/// The position in a checked `v` statement.
+fn position(line: &str) -> Option<DVec3> {
+    let numbers = lines::words(line.strip_prefix("v ")?).map(|word| lines::number(word).ok());
+    match numbers.collect::<Option<Vec<f64>>>()?[..] {
+        [x, y, z] => Some(DVec3::new(x, y, z)),
+        [x, y, z, weight] => Some(DVec3::new(x, y, z) / weight),
+        _ => None,
+    }
 }
 
 fn note_unused(scan: &Scan, materials: &[tobj::Material], notes: &mut Vec<String>) {

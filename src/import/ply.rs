@@ -3,8 +3,8 @@
 //! Based on: G. Turk, The PLY Polygon File Format, 1994. Any scalar and list
 //! types, any order of elements; what is unknown is skipped. Polygons come
 //! from the element `face`, triangle strips from `tristrips` (-1 separates).
-//! A file with neither is a cloud and needs normals. Vertex colours are read
-//! over: geometry does not carry them.
+//! A file with neither is a cloud; without normals they are estimated. Vertex
+//! colours are read over: geometry does not carry them.
 
 mod body;
 mod header;
@@ -17,7 +17,7 @@ use self::body::{Body, whole};
 use self::header::{Element, Header, Kind, Scalar};
 use super::normals::single;
 use super::surface::{Face, Polygons, corner, count, mesh};
-use super::{Imported, in_range, shown, unit};
+use super::{Imported, estimate, in_range, shown, unit};
 use crate::error::{Error, Place};
 use crate::geometry::{Cloud, Geometry, Material, OrientedPoint};
 
@@ -48,7 +48,11 @@ pub(super) fn read(file: &Path, bytes: &[u8]) -> Result<Imported, Error> {
     } = reader;
     note_unused(&header, &body, &mut notes);
     let geometry = if polygons.faces.is_empty() {
-        Geometry::Cloud(cloud(file, &polygons, has_normals, zero_normal)?)
+        Geometry::Cloud(if has_normals {
+            cloud(file, &polygons, zero_normal)?
+        } else {
+            estimate::cloud(file, &polygons.positions, &mut notes)?
+        })
     } else {
         Geometry::Mesh(mesh(file, polygons, &mut notes)?)
     };
@@ -305,30 +309,17 @@ fn coordinate(body: &mut Body, scalar: Scalar) -> Result<f64, Error> {
 fn cloud(
     file: &Path,
     vertices: &Polygons,
-    has_normals: bool,
     zero_normal: Option<(usize, Place)>,
 ) -> Result<Cloud, Error> {
-    const REMEDY: &str = "compute normals first, for example in MeshLab: Filters > Normals > \
-        Compute normals for point sets; estimating them is not supported yet";
-    if !has_normals {
-        return Err(Error::file(file, "a point cloud without normals", REMEDY));
-    }
     if let Some((index, place)) = zero_normal {
         return Err(Error::at(
             file,
             place,
             format!("the normal of point {index} is zero"),
-            REMEDY,
+            "remove the point, or the properties nx, ny and nz: normals are estimated then",
         ));
     }
-    let first = vertices.positions[0];
-    if vertices.positions.iter().all(|position| *position == first) {
-        let what = format!(
-            "nothing to draw: {} at one place",
-            count(vertices.positions.len(), "point")
-        );
-        return Err(Error::file(file, what, "a cloud needs two places or more"));
-    }
+    estimate::check_extent(file, &vertices.positions)?;
     let point = |(position, normal): (&DVec3, &DVec3)| {
         let normal = single(unit(*normal).unwrap_or(DVec3::Y));
         OrientedPoint {
@@ -342,5 +333,8 @@ fn cloud(
         .zip(&vertices.normals)
         .map(point)
         .collect();
-    Ok(Cloud { points })
+    Ok(Cloud {
+        points,
+        two_sided: false,
+    })
 }

@@ -128,6 +128,7 @@ pub(super) fn mesh(
         normals,
         triangles,
         materials,
+        two_sided: false,
     })
 }
 

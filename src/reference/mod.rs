@@ -94,8 +94,8 @@ pub struct Reference {
 
 impl Scene {
     /// Builds the hierarchy over a mesh's triangles or a cloud's discs. With
-    /// `two_sided` back faces are seen too. Geometry without extent (a lone
-    /// point, say) is invisible.
+    /// `two_sided`, or where the geometry says so, back faces are seen too.
+    /// Geometry without extent (a lone point, say) is invisible.
     pub fn new(geometry: &Geometry, two_sided: bool) -> Self {
         let (centre, radius) = geometry
             .bounds()
@@ -104,6 +104,7 @@ impl Scene {
                 (bounds.centre(), bounds.radius)
             });
         let place = |position: DVec3| ((position - centre) / radius).as_vec3();
+        let two_sided = two_sided || geometry.two_sided();
         Self {
             centre,
             radius,

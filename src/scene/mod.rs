@@ -310,6 +310,7 @@ fn square(table: &GroundTable) -> Mesh {
             name: "ground".into(),
             diffuse: table.colour,
         }],
+        two_sided: false,
     }
 }
 

@@ -119,6 +119,7 @@ fn sphere_of_points() -> Cloud {
     });
     Cloud {
         points: points.collect(),
+        two_sided: false,
     }
 }
 

@@ -1,8 +1,10 @@
 //! OBJ: each gap of the parser behind, and each error with its line.
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
-use super::{CUBE, TRIANGLE, area, assert_fails, assert_fails_at, mesh, normals, obj_mesh, read};
+use super::{
+    CUBE, TRIANGLE, area, assert_fails, assert_fails_at, cloud, mesh, normals, obj_mesh, read,
+};
 
 #[test]
 fn a_shared_cube_is_flat() {
@@ -227,16 +229,39 @@ fn the_first_bad_line_counts() {
 
 #[test]
 fn files_without_faces_are_not_silently_empty() {
-    let remedy = "convert point clouds to PLY with normals (nx ny nz); OBJ cannot pair them";
-    let expected = format!("a.obj: nothing to draw: 3 vertices but no faces; {remedy}");
-    assert_fails("a.obj", TRIANGLE, &expected);
     assert_fails(
         "a.obj",
         format!("{TRIANGLE}vn 0 0 1\nl 1 2 3\np 1\n"),
-        &expected,
+        "a.obj:5: nothing to draw: lines but no faces; \
+            export faces, or the vertices alone: a point cloud",
+    );
+    assert_fails_at(
+        "a.obj",
+        "v 1 2 3\n",
+        "a.obj: nothing to draw: 1 point at one place;",
     );
     assert_fails_at("a.obj", "hello\n", "a.obj: no vertices and no faces;");
     assert_fails_at("a.obj", "", "a.obj: the file is empty;");
+}
+
+#[test]
+fn vertices_alone_are_a_cloud() {
+    let points = "v 0 0 0\nv 2 0 0 2\nv 0 1 0 0.5 0.5 0.5\nv -0 1 0\n";
+    let imported = read("a.obj", format!("{points}vn 0 0 1\np 1 2\n")).unwrap();
+    assert_eq!(
+        imported.notes,
+        [
+            "1 statement `p` not used, the first on line 6",
+            "1 normal not used: OBJ does not pair them with points; PLY does (nx ny nz)",
+            "no normals: estimated, but 100% of the points are on open sheets: \
+                drawn from both sides",
+        ]
+    );
+    let cloud = cloud(imported);
+    let positions = cloud.points.iter().map(|point| point.position);
+    let expected = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Y];
+    assert_eq!(positions.collect::<Vec<_>>(), expected);
+    assert!(cloud.points.iter().all(|point| point.normal.z.abs() == 1.0));
 }
 
 #[test]

@@ -58,7 +58,7 @@ fn vertex_normals_are_used() {
 }
 
 #[test]
-fn clouds_need_normals() {
+fn clouds_keep_their_normals() {
     let points = "0 0 0 0 0 2\n1 0 0 0 3 4\n";
     for faces in [
         "",
@@ -69,13 +69,7 @@ fn clouds_need_normals() {
         assert_eq!(normals, [Vec3::Z, Vec3::new(0.0, 0.6, 0.8)]);
         assert_eq!(cloud.points[1].position, DVec3::X);
     }
-    let remedy = "compute normals first, for example in MeshLab: Filters > Normals > \
-        Compute normals for point sets; estimating them is not supported yet";
-    assert_fails(
-        "a.ply",
-        ply("x y z", THREE, "", ""),
-        &format!("a.ply: a point cloud without normals; {remedy}"),
-    );
+    let remedy = "remove the point, or the properties nx, ny and nz: normals are estimated then";
     let zero = ply("x y z nx ny nz", "0 0 0 0 0 1\n1 0 0 0 0 0\n", "", "");
     assert_fails(
         "a.ply",
@@ -87,6 +81,67 @@ fn clouds_need_normals() {
         "a.ply",
         same,
         "a.ply: nothing to draw: 2 points at one place;",
+    );
+}
+
+#[test]
+fn clouds_without_normals_get_them() {
+    let octahedron = |count: i32| -> String {
+        let place = |i: i32| {
+            let (x, y) = (i % count, i / count);
+            let z = count / 2 - (x - count / 2).abs() - (y - count / 2).abs();
+            (z >= 0).then(|| format!("{x} {y} {z}\n{x} {y} {}\n", -z))
+        };
+        (0..count * count).filter_map(place).collect()
+    };
+    let solid = read("a.ply", ply("x y z", &octahedron(32), "", "")).unwrap();
+    assert_eq!(solid.notes, ["no normals: estimated, looking outwards"]);
+    let solid = cloud(solid);
+    assert!(!solid.two_sided);
+    for point in solid.points.iter().filter(|p| p.position.z.abs() > 4.0) {
+        assert!(
+            f64::from(point.normal.z) * point.position.z > 0.0,
+            "{point:?}"
+        );
+    }
+    let flat = read("a.ply", ply("x y z", THREE, "", "")).unwrap();
+    let note = "no normals: estimated, but 100% of the points are on open sheets: \
+        drawn from both sides";
+    assert_eq!(flat.notes, [note]);
+    let flat = cloud(flat);
+    assert!(flat.two_sided && flat.points.iter().all(|p| p.normal.z.abs() == 1.0));
+}
+
+#[test]
+fn clouds_without_normals_need_a_plane() {
+    let remedy = "give normals (nx ny nz in PLY), or check the coordinates";
+    for (points, number) in [
+        ("0 0 0\n1 2 3\n", 2),
+        ("0 0 0\n1 2 3\n0.5 1 1.5\n-2 -4 -6\n", 4),
+        ("1e30 0 0\n-1e30 0 0\n1e30 0 0\n", 3),
+    ] {
+        let expected = format!(
+            "a.ply: no normals, and none to be estimated: {number} points on one line; {remedy}"
+        );
+        assert_fails("a.ply", ply("x y z", points, "", ""), &expected);
+    }
+    let same = ply("x y z", "1 2 3\n1 2 3\n", "", "");
+    assert_fails_at(
+        "a.ply",
+        same,
+        "a.ply: nothing to draw: 2 points at one place;",
+    );
+    let one = ply("x y z", "1 2 3\n", "", "");
+    assert_fails_at(
+        "a.ply",
+        one,
+        "a.ply: nothing to draw: 1 point at one place;",
+    );
+    let nan = ply("x y z", "1 2 3\n1 nan 3\n", "", "");
+    assert_fails_at(
+        "a.ply",
+        nan,
+        "a.ply:9: the coordinate NaN is not a finite number;",
     );
 }
 

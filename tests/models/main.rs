@@ -1,6 +1,8 @@
 //! Real scans and models, where `RHOGRID_MODELS` names their folder. They are
 //! not part of the repository.
 
+mod clouds;
+
 use std::path::PathBuf;
 use std::process::Command;
 

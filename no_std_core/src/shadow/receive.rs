@@ -321,7 +321,7 @@ pub(crate) fn bias(space: &LightSpace, cast: &CastForms, cell: u64, factor: Spla
     // Texels Q16, times Q16, to Q4 steps of depth.
     let in_steps = |texels_q16: i64| {
         // 32 + 24 + 15 bits: the lowest are of no weight.
-        let wide = (texels_q16 * factor >> 20) * steps;
+        let wide = ((texels_q16 * factor) >> 20) * steps;
         (wide.checked_div(texels).unwrap_or(0) >> 8).min(1 << 20) as i32
     };
     [in_steps(along) + 16, in_steps(across) / TANGENT_ONE as i32]

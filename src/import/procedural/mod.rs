@@ -66,8 +66,8 @@ pub fn demo() -> Mesh {
 /// Names of models that are built in.
 pub const NAMES: [&str; 3] = ["demo", "tree-broad", "tree-willow"];
 
-/// A model of [`NAMES`]; trees have leaves of one sheet and want to be drawn
-/// from both sides.
+/// A model of [`NAMES`]; trees have leaves of one sheet and are seen from both
+/// sides.
 pub fn built_in(name: &str) -> Option<Mesh> {
     let grow = match name {
         "demo" => return Some(demo()),
@@ -77,7 +77,10 @@ pub fn built_in(name: &str) -> Option<Mesh> {
     };
     let mut builder = Builder::default();
     grow(&mut builder);
-    Some(painted(builder, &tree::PALETTE))
+    Some(Mesh {
+        two_sided: true,
+        ..painted(builder, &tree::PALETTE)
+    })
 }
 
 fn painted(builder: Builder, palette: &[(&str, [u8; 3])]) -> Mesh {

@@ -1,5 +1,4 @@
-//! Trees: limbs that fork into thinner ones, and leaves that are single sheets,
-//! to be baked two-sided.
+//! Trees: limbs that fork into thinner ones, and leaves that are single sheets.
 //!
 //! The two stand for the paper's Arbre and Saule (Duguet and Drettakis 2003,
 //! table 4), which are not to be had: about as many samples at level 4.
