@@ -1,7 +1,7 @@
 //! The canvas: what samples are drawn into before they become colours.
 //!
-//! A pixel is one word, depth << 16 | attribute, zero where nothing is
-//! drawn; comparing words compares depths. Rows are 256 words apart and
+//! A [`Pixel`] begins with one word, depth << 16 | attribute, zero where nothing
+//! is drawn; comparing words compares depths. Rows are 256 pixels apart and
 //! [`GUARD`] rows lie above and below, so that the neighbourhood of any
 //! sample near the strip is a [`Window`]: 16 rows of 16 columns in one slice
 //! of constant length, which needs no test for each sample. Columns beyond
@@ -11,12 +11,16 @@
 //! 241, so that the pixels right next to the strip, 240 and 255, are their own.
 //! [`AROUND`] the strip pixels are as in any other strip that holds them.
 
+mod pixel;
+
 use core::hint::black_box;
 use core::ops::Range;
 
+pub(crate) use pixel::Pixel;
+
 use crate::target::Rect;
 
-/// Words from row to row.
+/// Pixels from row to row.
 pub(crate) const PITCH: usize = 256;
 /// Rows above and below the strip.
 const GUARD: usize = 17;
@@ -28,22 +32,22 @@ pub(crate) const AROUND: [i32; 2] = [1, 2];
 pub(crate) const REACH: [i32; 2] = [8, 9];
 /// Columns on either side of a strip that samples near it reach.
 const SIDE: usize = REACH[0] as usize + 9;
-/// Words of a window: 16 rows, and what squares at any of their words reach.
+/// Pixels of a window: 16 rows, and what squares at any of them reach.
 pub(crate) const WINDOW: usize = 17 * PITCH + 1;
 /// The window's pixel that its centre falls on, both ways.
 pub(crate) const WINDOW_CENTRE: i32 = 8;
 
 /// Sixteen rows of the canvas.
-pub(crate) type Window = [u32; WINDOW];
+pub(crate) type Window<P> = [P; WINDOW];
 
 /// Words of a canvas that takes strips of so many rows.
 pub const fn canvas_len(rows: u16) -> usize {
     (rows as usize + 2 * GUARD + 1) * PITCH
 }
 
-/// Rows of the tallest strip that a canvas takes.
-pub(crate) const fn canvas_rows(words: usize) -> usize {
-    (words / PITCH).saturating_sub(2 * GUARD + 1)
+/// Rows of the tallest strip that a canvas of so many pixels takes.
+pub(crate) const fn canvas_rows(pixels: usize) -> usize {
+    (pixels / PITCH).saturating_sub(2 * GUARD + 1)
 }
 
 /// Zeroes words.
@@ -69,22 +73,22 @@ pub(crate) fn clear(words: &mut [u32]) {
 
 /// Clears rows in which so many columns are a strip's, and what samples near
 /// them reach on either side.
-fn clear_columns(rows: &mut [u32], columns: usize) {
+fn clear_columns<P: Pixel>(rows: &mut [P], columns: usize) {
     let beside = [columns + SIDE, PITCH - SIDE];
     if beside[0] >= beside[1] {
-        return clear(rows);
+        return clear(P::words(rows));
     }
     for row in rows.as_chunks_mut::<PITCH>().0 {
         let (own, rest) = row.split_at_mut(beside[0]);
-        clear(own);
+        clear(P::words(own));
         // The left side of the next row.
-        clear(rest.split_at_mut(beside[1] - beside[0]).1);
+        clear(P::words(rest.split_at_mut(beside[1] - beside[0]).1));
     }
 }
 
 /// A strip of the picture on the canvas.
-pub(crate) struct Canvas<'a> {
-    words: &'a mut [u32],
+pub(crate) struct Canvas<'a, P> {
+    pixels: &'a mut [P],
     /// The pixels that will be seen.
     pub strip: Rect,
     /// Pixels on which something may have been drawn, relative to the strip.
@@ -126,14 +130,15 @@ impl Touched {
     }
 }
 
-impl<'a> Canvas<'a> {
+impl<'a, P: Pixel> Canvas<'a, P> {
     /// A canvas for a strip, cleared.
     pub fn new(words: &'a mut [u32], strip: Rect) -> Self {
         let rows = strip.height() + 2 * GUARD + 1;
-        let used = words.len().min(rows * PITCH);
-        clear_columns(words.split_at_mut(used).0, strip.width());
+        let pixels = P::of(words);
+        let used = pixels.len().min(rows * PITCH);
+        clear_columns(pixels.split_at_mut(used).0, strip.width());
         Self {
-            words,
+            pixels,
             strip,
             touched: Touched::NOTHING,
         }
@@ -157,30 +162,30 @@ impl<'a> Canvas<'a> {
     /// The window around a pixel of the picture, at most [`REACH`] from the
     /// strip.
     #[inline(always)]
-    pub fn window(&mut self, column: i32, row: i32) -> Option<&mut Window> {
+    pub fn window(&mut self, column: i32, row: i32) -> Option<&mut Window<P>> {
         let row = row - i32::from(self.strip.top) - WINDOW_CENTRE;
         let column = column - i32::from(self.strip.left) - WINDOW_CENTRE;
         self.touched.add_window(column, row);
         let start = ((row + GUARD as i32) * PITCH as i32 + column) as usize;
-        self.words.get_mut(start..)?.first_chunk_mut()
+        self.pixels.get_mut(start..)?.first_chunk_mut()
     }
 
     /// Pixels of a row from a column on.
     #[inline(always)]
-    pub fn row(&mut self, column: i32, row: i32, columns: usize) -> Option<&mut [u32]> {
+    pub fn row(&mut self, column: i32, row: i32, columns: usize) -> Option<&mut [P]> {
         let row = row - i32::from(self.strip.top);
         let column = column - i32::from(self.strip.left);
         self.touched
             .add([column, column + columns as i32 - 1], [row, row]);
         let start = ((row + GUARD as i32) * PITCH as i32 + column) as usize;
-        self.words.get_mut(start..start + columns)
+        self.pixels.get_mut(start..start + columns)
     }
 
     /// Whether a pixel on the canvas shows more than a word.
     #[inline(always)]
     pub fn exceeds_at(&self, column: i32, row: i32, word: u32) -> bool {
-        let own = self.words.get(self.index(column, row));
-        own.is_some_and(|&own| own > word)
+        let own = self.pixels.get(self.index(column, row));
+        own.is_some_and(|own| own.word() > word)
     }
 
     /// Whether all pixels of a rectangle, first to last column and row, show
@@ -202,8 +207,8 @@ impl<'a> Canvas<'a> {
         let length = (right - left + 1).max(0) as usize;
         (top..=bottom).all(|row| {
             let start = self.index(left, row);
-            let row = self.words.get(start..start + length);
-            row.is_some_and(|row| row.iter().all(|&own| own > word))
+            let row = self.pixels.get(start..start + length);
+            row.is_some_and(|row| row.iter().all(|own| own.word() > word))
         })
     }
 
@@ -217,9 +222,10 @@ impl<'a> Canvas<'a> {
     /// The neighbourhoods of pixels of a row of the strip: five rows, from the
     /// second above the first one's left neighbour to the second below the
     /// last one's right neighbour.
-    pub fn neighbourhoods(&self, columns: &Range<u16>, row: u16) -> Option<&[u32]> {
+    pub fn neighbourhoods(&self, columns: &Range<u16>, row: u16) -> Option<&[P]> {
         let first = usize::from(row - self.strip.top) + GUARD - 2;
         let start = first * PITCH + usize::from(columns.start - self.strip.left) - 1;
-        self.words.get(start..start + 4 * PITCH + columns.len() + 2)
+        self.pixels
+            .get(start..start + 4 * PITCH + columns.len() + 2)
     }
 }

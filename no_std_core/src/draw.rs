@@ -4,11 +4,13 @@ mod stages;
 
 use crate::asset::Grid;
 use crate::camera::Camera;
+use crate::canvas::Pixel;
 use crate::grid::traverse;
 use crate::normal::CODES;
 use crate::numbers::{SplatPx, Unit, Weight};
 use crate::plan::Plan;
 use crate::projection::Projection;
+use crate::shade::Paint;
 use crate::stats::Stats;
 use crate::target::Target;
 
@@ -74,6 +76,10 @@ pub const fn shades_len(material_count: usize) -> usize {
 /// `shades` is memory for a frame's colours, [`shades_len`] words; where it
 /// is shorter, or where few pixels can show anything, they are shaded one by
 /// one, to the same bytes.
+///
+/// Samples with colours of their own take two words of the canvas a pixel: of a
+/// canvas for so many rows, about half. A canvas of less than twice
+/// [`crate::target::canvas_len`] of one row shows their materials instead.
 pub fn draw(
     grid: &Grid<'_>,
     camera: &Camera,
@@ -82,13 +88,31 @@ pub fn draw(
     shades: &mut [u16],
     target: &mut Target<'_>,
 ) -> Stats {
+    let view = (camera, quality);
+    match Paint::of(grid, target.canvas.len()) {
+        paint @ Paint::Samples(_) => {
+            draw_on::<[u32; 2]>(grid, view, light, (paint, shades), target)
+        }
+        paint => draw_on::<u32>(grid, view, light, (paint, shades), target),
+    }
+}
+
+/// The same with pixels of one kind.
+#[inline(always)]
+fn draw_on<P: Pixel>(
+    grid: &Grid<'_>,
+    (camera, quality): (&Camera, &Quality),
+    light: &Light,
+    (paint, shades): (Paint<'_>, &mut [u16]),
+    target: &mut Target<'_>,
+) -> Stats {
     let projection = Projection::new(camera);
     let plan = Plan::with(grid, camera, quality, &projection);
     let shades = if plan.tabulates { shades } else { &mut [] };
-    let shader = stages::shade(light, grid.materials(), shades);
+    let shader = stages::shade(light, paint, shades);
     let mut stats = Stats::default();
-    for strip in target.strips() {
-        let mut canvas = stages::clear(target.canvas, strip.intersection(plan.part));
+    for strip in target.strips::<P>() {
+        let mut canvas = stages::clear::<P>(target.canvas, strip.intersection(plan.part));
         if canvas.strip.pixels() > 0 {
             traverse(
                 grid,

@@ -17,7 +17,7 @@ pub(crate) use merge::{Shadowed, merge};
 
 use core::ops::Range;
 
-use crate::canvas::{Canvas, PITCH};
+use crate::canvas::{Canvas, PITCH, Pixel};
 use crate::shade::Shader;
 use crate::target::{Picture, Rect, blank};
 
@@ -32,7 +32,7 @@ pub(crate) struct Gap {
 }
 
 /// A pixel and what lies around it on the canvas: five rows of three.
-type Neighbourhood = [u32; 4 * PITCH + 3];
+type Neighbourhood<P> = [P; 4 * PITCH + 3];
 
 /// Where the pixel itself is.
 const OWN: usize = 2 * PITCH + 1;
@@ -43,8 +43,8 @@ const OPPOSITE: [usize; 4] = [1, PITCH, PITCH + 1, PITCH - 1];
 
 /// Writes a strip's colours, and depths where they are asked for. What lies
 /// beyond the canvas is empty.
-pub(crate) fn resolve(
-    canvas: &Canvas<'_>,
+pub(crate) fn resolve<P: Pixel>(
+    canvas: &Canvas<'_, P>,
     strip: Rect,
     repair: Option<Gap>,
     shader: &Shader<'_>,
@@ -60,39 +60,42 @@ pub(crate) fn resolve(
         for beside in [strip.left..columns.start, columns.end..strip.right] {
             picture.blank(beside, row..row + 1);
         }
-        let Some(words) = canvas.neighbourhoods(&columns, row) else {
+        let Some(pixels) = canvas.neighbourhoods(&columns, row) else {
             return;
         };
         if let Some(colours) = picture.colours(columns.clone(), row) {
             match (repair, shader.table_of_one()) {
-                (None, _) => plain_row(words, shader, colours),
+                (None, _) => plain_row(pixels, shader, colours),
                 (Some(gap), None) => {
-                    row_of(words, &mut above, gap, colours, |word| {
-                        shader.colour(word as u16)
+                    row_of(pixels, &mut above, gap, colours, |pixel: P| {
+                        pixel.colour(shader, 0)
                     });
                 }
                 (Some(gap), Some(table)) => {
-                    row_of(words, &mut above, gap, colours, |word| {
-                        table[word as usize % table.len()]
+                    row_of(pixels, &mut above, gap, colours, |pixel: P| {
+                        table[pixel.word() as usize % table.len()]
                     });
                 }
             }
         }
         if let Some(depths) = picture.depths(columns.clone(), row) {
-            depth_row(words, repair, depths);
+            depth_row(pixels, repair, depths);
         }
     }
 }
 
-fn plain_row(words: &[u32], shader: &Shader<'_>, colours: &mut [u16]) {
-    for (colour, &own) in colours.iter_mut().zip(words.iter().skip(OWN)) {
-        *colour = shader.colour_of(own);
+fn plain_row<P: Pixel>(pixels: &[P], shader: &Shader<'_>, colours: &mut [u16]) {
+    for (colour, &own) in colours.iter_mut().zip(pixels.iter().skip(OWN)) {
+        *colour = match own.word() {
+            0 => 0,
+            _ => own.colour(shader, 0),
+        };
     }
 }
 
-/// Least numbers of empty words at a line's two ends, four at a time.
-fn empty_ends(line: &[u32]) -> [usize; 2] {
-    let is_empty = |&&[a, b, c, d]: &&[u32; 4]| a | b | c | d == 0;
+/// Least numbers of empty pixels at a line's two ends, four at a time.
+fn empty_ends<P: Pixel>(line: &[P]) -> [usize; 2] {
+    let is_empty = |&&[a, b, c, d]: &&[P; 4]| a.word() | b.word() | c.word() | d.word() == 0;
     let ahead = line.as_chunks().0.iter().take_while(is_empty);
     let behind = line.as_rchunks().1.iter().rev().take_while(is_empty);
     [4 * ahead.count(), 4 * behind.count()]
@@ -101,9 +104,9 @@ fn empty_ends(line: &[u32]) -> [usize; 2] {
 /// Which of a row's pixels may show something. `above` is how much of the row
 /// above is known to be empty at its ends, and then how much of this one.
 #[inline(always)]
-fn inner(words: &[u32], above: &mut [usize; 2], length: usize) -> Range<usize> {
+fn inner<P: Pixel>(pixels: &[P], above: &mut [usize; 2], length: usize) -> Range<usize> {
     // A hole has something on two sides, and so beside it or above it.
-    let line = words.get(2 * PITCH..2 * PITCH + length + 2);
+    let line = pixels.get(2 * PITCH..2 * PITCH + length + 2);
     let own = line.map_or([0; 2], empty_ends);
     let ahead = above[0].min(own[0]);
     let behind = above[1].min(own[1]);
@@ -118,14 +121,14 @@ fn inner(words: &[u32], above: &mut [usize; 2], length: usize) -> Range<usize> {
 /// left out: `above` is how much of the row above is known to be empty, and
 /// then how much of this one.
 #[inline(never)]
-fn row_of(
-    words: &[u32],
+fn row_of<P: Pixel>(
+    pixels: &[P],
     above: &mut [usize; 2],
     gap: Gap,
     colours: &mut [u16],
-    colour: impl Fn(u32) -> u16,
+    colour: impl Fn(P) -> u16,
 ) {
-    let Range { start, end } = inner(words, above, colours.len());
+    let Range { start, end } = inner(pixels, above, colours.len());
     let Some((inner, after)) = colours.split_at_mut_checked(end) else {
         return;
     };
@@ -134,7 +137,7 @@ fn row_of(
     };
     blank(before);
     blank(after);
-    let around = words.get(start..).unwrap_or(&[]).array_windows();
+    let around = pixels.get(start..).unwrap_or(&[]).array_windows();
     for (own, around) in inner.iter_mut().zip(around) {
         *own = pixel(around, gap, &colour);
     }
@@ -143,31 +146,35 @@ fn row_of(
 /// Whether a pixel that shows something is far from any hole, as most are: of
 /// what lies before it nothing is nearer by the least gap.
 #[inline(always)]
-fn is_far_from_holes(around: &Neighbourhood, gap: Gap) -> bool {
-    let ahead = around[OWN - PITCH + 1];
-    let nearest = ahead.max(around[OWN - PITCH]).max(around[OWN - PITCH - 1]);
-    let least = around[OWN].saturating_add(gap.base);
-    nearest <= least && around[OWN - 1] <= least
+fn is_far_from_holes<P: Pixel>(around: &Neighbourhood<P>, gap: Gap) -> bool {
+    let [before, middle, ahead] =
+        [OWN - PITCH - 1, OWN - PITCH, OWN - PITCH + 1].map(|at| around[at].word());
+    let nearest = ahead.max(middle).max(before);
+    let least = around[OWN].word().saturating_add(gap.base);
+    nearest <= least && around[OWN - 1].word() <= least
 }
 
 #[inline(always)]
-fn pixel(around: &Neighbourhood, gap: Gap, colour: &impl Fn(u32) -> u16) -> u16 {
+fn pixel<P: Pixel>(around: &Neighbourhood<P>, gap: Gap, colour: &impl Fn(P) -> u16) -> u16 {
     let own = around[OWN];
-    if own != 0 && is_far_from_holes(around, gap) {
+    if own.word() != 0 && is_far_from_holes(around, gap) {
         return colour(own);
     }
-    let colour_of = |word| if word == 0 { 0 } else { colour(word) };
+    let colour_of = |pixel: P| match pixel.word() {
+        0 => 0,
+        _ => colour(pixel),
+    };
     match hole(around, gap) {
         None => colour_of(own),
         Some([first, second]) => mean(colour_of(first), colour_of(second)),
     }
 }
 
-fn depth_row(words: &[u32], repair: Option<Gap>, depths: &mut [u16]) {
-    for (depth, around) in depths.iter_mut().zip(words.array_windows()) {
+fn depth_row<P: Pixel>(pixels: &[P], repair: Option<Gap>, depths: &mut [u16]) {
+    for (depth, around) in depths.iter_mut().zip(pixels.array_windows()) {
         let shown = match repair.and_then(|gap| hole(around, gap)) {
-            Some([first, second]) => first.min(second),
-            None => around[OWN],
+            Some([first, second]) => first.word().min(second.word()),
+            None => around[OWN].word(),
         };
         *depth = (shown >> 16) as u16;
     }
@@ -188,13 +195,13 @@ impl Gap {
 
 /// The two pixels that close a hole, if it is one: see the module.
 #[inline(always)]
-fn hole(around: &Neighbourhood, gap: Gap) -> Option<[u32; 2]> {
-    let limit = gap.limit(around[OWN]);
-    let before = OPPOSITE.map(|offset| around[OWN - offset]);
+fn hole<P: Pixel>(around: &Neighbourhood<P>, gap: Gap) -> Option<[P; 2]> {
+    let limit = gap.limit(around[OWN].word());
+    let before = OPPOSITE.map(|offset| around[OWN - offset].word());
     if before.into_iter().all(|word| word <= limit) {
         return None;
     }
-    let behind = OPPOSITE.map(|offset| around[OWN + offset]);
+    let behind = OPPOSITE.map(|offset| around[OWN + offset].word());
     if behind.into_iter().all(|word| word <= limit) {
         return None;
     }
@@ -203,16 +210,17 @@ fn hole(around: &Neighbourhood, gap: Gap) -> Option<[u32; 2]> {
 
 /// The same where neighbours on both sides are nearer than the limit.
 #[inline(never)]
-fn closing(around: &Neighbourhood, limit: u32) -> Option<[u32; 2]> {
+fn closing<P: Pixel>(around: &Neighbourhood<P>, limit: u32) -> Option<[P; 2]> {
     let pairs = OPPOSITE.map(|offset| [around[OWN - offset], around[OWN + offset]]);
-    let deeper = pairs.map(|[before, behind]| before.min(behind));
+    let deeper = pairs.map(|[before, behind]| before.word().min(behind.word()));
     let nearest = deeper.into_iter().fold(0, u32::max);
     if nearest > limit {
         return pairs
             .into_iter()
-            .find(|&[before, behind]| before.min(behind) == nearest);
+            .find(|[before, behind]| before.word().min(behind.word()) == nearest);
     }
-    let nearer = pairs.into_iter().flatten().filter(|&word| word > limit);
+    let nearer = pairs.into_iter().flatten();
+    let nearer = nearer.filter(|pixel| pixel.word() > limit);
     if nearer.count() < 4 {
         return None;
     }
@@ -221,7 +229,7 @@ fn closing(around: &Neighbourhood, limit: u32) -> Option<[u32; 2]> {
         [around[OWN - 2 * PITCH], around[OWN + PITCH]],
     ];
     long.into_iter()
-        .find(|&[above, below]| above > limit && below > limit)
+        .find(|[above, below]| above.word() > limit && below.word() > limit)
 }
 
 /// The mean of two RGB565 colours, each channel rounded down.

@@ -13,6 +13,7 @@ pub use draw::{Memory, draw_scene};
 use crate::asset::{Grid, Rgb};
 use crate::numbers::{Unit, Weight};
 use crate::placement::Placement;
+use crate::shade::Paint;
 use crate::shadow::Shadows;
 
 /// Lamps in a scene at most.
@@ -25,15 +26,19 @@ pub struct Instance<'a> {
     pub grid: &'a Grid<'a>,
     /// Where it stands.
     pub placement: Placement,
-    /// Its materials' colours; `None` for the grid's own. Beyond the last one,
-    /// black.
+    /// Its materials' colours, whatever its samples'; `None` for the grid's own.
+    /// Beyond the last one, black.
     pub materials: Option<&'a [Rgb]>,
 }
 
 impl Instance<'_> {
-    /// Its materials' colours.
-    pub(crate) fn colours(&self) -> &[Rgb] {
-        self.materials.unwrap_or(self.grid.materials())
+    /// What has its colours on a canvas of so many words.
+    #[inline(always)]
+    pub(crate) fn paint(&self, canvas: usize) -> Paint<'_> {
+        match self.materials {
+            Some(materials) => Paint::Materials(materials),
+            None => Paint::of(self.grid, canvas),
+        }
     }
 }
 

@@ -4,7 +4,8 @@
 //! attribute goes into a table (16 KB a material); where the caller gives no
 //! memory for it, samples are shaded one by one, to the same bytes.
 
-use crate::asset::{MAX_MATERIALS, Rgb};
+use crate::asset::{Grid, Level, MAX_MATERIALS, Rgb};
+use crate::canvas::{Pixel, canvas_rows};
 use crate::draw::Light;
 use crate::normal::{CODES, OCTANT, OCTANT_CODES, decode};
 use crate::numbers::Weight;
@@ -15,6 +16,17 @@ use crate::scene::{Lighting, MAX_LAMPS};
 /// eighth of a level of 6-bit green: rounding to it adds 1/16 to the half level
 /// that rounding to 5:6:5 costs.
 const STEPS: usize = 512;
+
+/// Every brightness as it is.
+static BRIGHTNESS: [u16; STEPS + 1] = {
+    let mut ramp = [0; STEPS + 1];
+    let mut step = 0;
+    while step <= STEPS {
+        ramp[step] = step as u16;
+        step += 1;
+    }
+    ramp
+};
 
 /// What shading needs to know of lights and materials.
 #[derive(Clone, Copy)]
@@ -101,6 +113,13 @@ impl<'a> Model<'a> {
     /// The colour of an attribute under the lamps whose bits are not set.
     #[inline(never)]
     fn colour(&self, attribute: u16, unlit: u32) -> u16 {
+        let ramp = &self.ramps[usize::from(attribute >> 13) % MAX_MATERIALS];
+        ramp.colour(self.brightnesses(attribute, unlit))
+    }
+
+    /// The brightness of each channel, 0 to [`STEPS`].
+    #[inline(always)]
+    fn brightnesses(&self, attribute: u16, unlit: u32) -> [usize; 3] {
         let normal = match self.normals {
             None => decode(attribute),
             Some(normals) => normals.normal(attribute),
@@ -114,8 +133,7 @@ impl<'a> Model<'a> {
                 }
             }
         }
-        let ramp = &self.ramps[usize::from(attribute >> 13) % MAX_MATERIALS];
-        ramp.colour(weights.map(steps))
+        weights.map(steps)
     }
 
     /// Whether brightness is that of one white light on normals as they are.
@@ -123,18 +141,28 @@ impl<'a> Model<'a> {
         self.normals.is_none() && self.lamp_count == 1 && self.lamps[0].colour == [WHITE; 3]
     }
 
+    /// Fills the table of brightness by normal, which suits every colour, if
+    /// that is one for all channels.
+    fn fill_brightness(&self, table: &mut [u16]) -> bool {
+        if self.is_plain() {
+            self.fill_material(&BRIGHTNESS, table);
+        }
+        self.is_plain()
+    }
+
     /// Fills the table, material after material.
-    fn fill(&self, table: &mut [u16]) {
+    fn fill(&self, table: &mut [u16]) -> bool {
         if !self.is_plain() {
             for (colour, attribute) in table.iter_mut().zip(0u16..) {
                 *colour = self.colour(attribute, 0);
             }
-            return;
+            return true;
         }
         let ramps = self.ramps.iter().take(self.count);
         for (colours, ramp) in table.chunks_exact_mut(CODES).zip(ramps) {
             self.fill_material(&ramp.all(), colours);
         }
+        true
     }
 
     /// Two octants at once: of the cosines with a direction and its opposite,
@@ -223,28 +251,59 @@ fn steps(weight: i32) -> usize {
     (weight as usize >> 6).min(STEPS)
 }
 
+/// What has the colours.
+#[derive(Clone, Copy)]
+pub(crate) enum Paint<'a> {
+    Materials(&'a [Rgb]),
+    /// The samples of these levels.
+    Samples(&'a [Level<'a>]),
+}
+
+impl<'a> Paint<'a> {
+    fn materials(self) -> &'a [Rgb] {
+        match self {
+            Self::Materials(materials) => materials,
+            Self::Samples(_) => &[],
+        }
+    }
+
+    /// Of a grid on a canvas of so many words: its samples' own colours, if they
+    /// have some and the canvas has a row for them; else its materials'.
+    #[inline(always)]
+    pub fn of(grid: &'a Grid<'a>, canvas: usize) -> Self {
+        let is_coloured = cfg!(feature = "colour") && grid.attribute_bits() > 16;
+        match is_coloured && canvas_rows(canvas / <[u32; 2]>::WORDS) > 0 {
+            true => Self::Samples(grid.levels()),
+            false => Self::Materials(grid.materials()),
+        }
+    }
+}
+
 /// Colours of attributes for one frame.
 pub(crate) struct Shader<'a> {
     model: Model<'a>,
     /// What materials are in ambient light alone.
     dark: [u16; MAX_MATERIALS],
     table: &'a [u16],
+    /// Those whose samples have the colours; the table is of brightness then.
+    levels: &'a [Level<'a>],
 }
 
 impl<'a> Shader<'a> {
     /// For one light in model space. Fills the table if `memory` holds it: 8192
     /// words for each material.
-    pub fn new(light: &Light, materials: &[Rgb], memory: &'a mut [u16]) -> Self {
+    pub fn new(light: &Light, paint: Paint<'a>, memory: &'a mut [u16]) -> Self {
         let towards = light.towards.map(|c| c.to_bits());
         let beam = Beam::new(towards, light.diffuse, [255; 3]);
-        Self::with(Model::new(light.ambient, materials, [beam], None), memory)
+        let model = Model::new(light.ambient, paint.materials(), [beam], None);
+        Self::with(model, paint, memory)
     }
 
     /// The same for a placed grid in a scene's light.
     pub fn placed(
         lighting: &Lighting<'_>,
         normals: &'a NormalMap,
-        materials: &[Rgb],
+        paint: Paint<'a>,
         memory: &'a mut [u16],
     ) -> Self {
         let beams = lighting.lamps.iter().map(|lamp| {
@@ -252,23 +311,32 @@ impl<'a> Shader<'a> {
             Beam::new(towards, lamp.diffuse, lamp.colour)
         });
         let sheared = (!normals.is_plain()).then_some(normals);
-        let model = Model::new(lighting.ambient, materials, beams, sheared);
-        Self::with(model, memory)
+        let model = Model::new(lighting.ambient, paint.materials(), beams, sheared);
+        Self::with(model, paint, memory)
     }
 
-    fn with(model: Model<'a>, memory: &'a mut [u16]) -> Self {
+    fn with(model: Model<'a>, paint: Paint<'a>, memory: &'a mut [u16]) -> Self {
         let ambient = [steps(model.ambient); 3];
-        let table = match memory.get_mut(..CODES * model.count) {
-            Some(table) => {
-                model.fill(table);
-                &*table
-            }
-            None => &[],
+        let levels: &[_] = match paint {
+            Paint::Materials(_) => &[],
+            Paint::Samples(levels) => levels,
         };
+        let table = match levels {
+            [] => memory.get_mut(..CODES * model.count),
+            _ => memory.get_mut(..CODES),
+        };
+        let table = table.and_then(|table| {
+            let is_full = match levels {
+                [] => model.fill(table),
+                _ => model.fill_brightness(table),
+            };
+            is_full.then_some(&*table)
+        });
         Self {
             dark: model.ramps.map(|ramp| ramp.colour(ambient)),
             model,
-            table,
+            table: table.unwrap_or(&[]),
+            levels,
         }
     }
 
@@ -286,17 +354,22 @@ impl<'a> Shader<'a> {
 
     /// The table, if it is that of one material.
     pub fn table_of_one(&self) -> Option<&[u16; CODES]> {
-        self.table.try_into().ok()
+        let is_of_colours = self.levels.is_empty();
+        self.table.try_into().ok().filter(|_| is_of_colours)
     }
 
-    /// The colour of a pixel of the canvas: black where nothing is drawn.
-    #[inline(always)]
-    pub fn colour_of(&self, word: u32) -> u16 {
-        if word == 0 {
-            0
-        } else {
-            self.colour(word as u16)
-        }
+    /// The colour of an attribute of a sample, given its depth and its index in
+    /// its level.
+    #[inline(never)]
+    pub fn coloured(&self, attribute: u16, (depth, index): (usize, usize), unlit: u32) -> u16 {
+        let level = self.levels.get(depth);
+        let own = level.and_then(|level| level.colours.get(index));
+        let brightness = self.table.get(usize::from(attribute) % CODES);
+        let brightnesses = match brightness {
+            Some(&brightness) if unlit == 0 => [usize::from(brightness); 3],
+            _ => self.model.brightnesses(attribute, unlit),
+        };
+        Ramp::new(own.unwrap_or([0; 3])).colour(brightnesses)
     }
 
     /// The colour of an attribute.

@@ -7,7 +7,7 @@
 //! fills gaps between cores but does not cover a neighbour's core, which
 //! knows the surface there better.
 
-use crate::canvas::{AROUND, Canvas};
+use crate::canvas::{AROUND, Canvas, Pixel};
 use crate::numbers::{SCREEN_BITS, SCREEN_ONE};
 
 /// Size of the splats of one block of cells.
@@ -21,12 +21,14 @@ pub(crate) struct Extent {
 
 /// One sample on the screen.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Splat {
+pub(crate) struct Splat<S> {
     /// Centre, Q20.12 pixels from the picture's top left corner.
     pub x: i32,
     pub y: i32,
     pub depth: u16,
     pub attribute: u16,
+    /// See [`Pixel::Sample`].
+    pub sample: S,
 }
 
 /// First pixel and the pixel behind the last whose centres lie in [centre -
@@ -43,7 +45,11 @@ fn span(centre: i32, half: i32, first: i32, end: i32) -> (i32, i32) {
 /// Draws one splat. A function of its own: a traversal that also holds its
 /// registers would spill them for every leaf.
 #[inline(never)]
-pub(crate) fn draw(canvas: &mut Canvas<'_>, splat: &Splat, extent: &Extent) {
+pub(crate) fn draw<P: Pixel>(
+    canvas: &mut Canvas<'_, P>,
+    splat: &Splat<P::Sample>,
+    extent: &Extent,
+) {
     let strip = canvas.strip;
     let within =
         |first: u16, end: u16, around: i32| [i32::from(first) - around, i32::from(end) + around];
@@ -76,8 +82,8 @@ pub(crate) fn draw(canvas: &mut Canvas<'_>, splat: &Splat, extent: &Extent) {
         for (pixel, column) in pixels.iter_mut().zip(0u32..) {
             let in_core = column.wrapping_sub(core_first) < core_columns;
             let depth = if in_core { core } else { rim };
-            if depth > *pixel {
-                *pixel = depth | u32::from(splat.attribute);
+            if depth > pixel.word() {
+                *pixel = P::new(depth | u32::from(splat.attribute), splat.sample);
             }
         }
     }

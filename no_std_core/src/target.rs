@@ -4,7 +4,7 @@
 //! checked once, here.
 
 pub use crate::canvas::canvas_len;
-use crate::canvas::{STRIP_COLUMNS, canvas_rows, clear};
+use crate::canvas::{Pixel, STRIP_COLUMNS, canvas_rows, clear};
 use core::ops::Range;
 
 use crc::{CRC_32_ISO_HDLC, Crc, Table};
@@ -105,8 +105,13 @@ impl<'a> Layers<'a> {
         }
     }
 
-    pub(crate) fn strips(&self) -> impl Iterator<Item = Rect> + use<> {
-        self.target.strips()
+    pub(crate) fn strips<P: Pixel>(&self) -> impl Iterator<Item = Rect> + use<P> {
+        self.target.strips::<P>()
+    }
+
+    /// Words of the canvas.
+    pub(crate) fn canvas_len(&self) -> usize {
+        self.target.canvas.len()
     }
 
     /// The canvas, and what is drawn.
@@ -191,10 +196,10 @@ impl<'a> Target<'a> {
         })
     }
 
-    /// The strips that the band is drawn in.
-    pub(crate) fn strips(&self) -> impl Iterator<Item = Rect> + use<> {
+    /// The strips that the band is drawn in with pixels of a kind.
+    pub(crate) fn strips<P: Pixel>(&self) -> impl Iterator<Item = Rect> + use<P> {
         let band = self.picture.band;
-        let rows = canvas_rows(self.canvas.len()).clamp(1, usize::from(MAX_SIZE)) as u16;
+        let rows = canvas_rows(self.canvas.len() / P::WORDS).clamp(1, usize::from(MAX_SIZE)) as u16;
         let tops = (band.top..band.bottom).step_by(usize::from(rows));
         tops.flat_map(move |top| {
             let lefts = (band.left..band.right).step_by(usize::from(STRIP_COLUMNS));

@@ -121,6 +121,13 @@ pub enum AssetError {
         /// Index of the cell in its level.
         index: u32,
     },
+    /// A colour has bits without meaning.
+    Colour {
+        /// Depth of the cell.
+        depth: u8,
+        /// Index of the cell in its level.
+        index: u32,
+    },
 }
 
 impl fmt::Display for AssetError {
@@ -207,6 +214,10 @@ impl fmt::Display for AssetError {
             Self::Attribute { depth, index } => write!(
                 f,
                 "depth {depth}, cell {index}: no such material; bake the asset again"
+            ),
+            Self::Colour { depth, index } => write!(
+                f,
+                "depth {depth}, cell {index}: no such colour; bake the asset again"
             ),
         }
     }

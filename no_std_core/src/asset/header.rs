@@ -33,8 +33,17 @@ impl Grid<'_> {
         if depth > max_depth(rho) {
             return Err(AssetError::Depth { depth });
         }
-        if field(11)? != 16 {
-            return Err(AssetError::Field { offset: 11 });
+        let attribute_bits = field(11)?;
+        match attribute_bits {
+            16 => {}
+            32 | 48 if cfg!(feature = "colour") => {}
+            32 | 48 => {
+                return Err(AssetError::LeftOut {
+                    offset: 11,
+                    feature: "colour",
+                });
+            }
+            _ => return Err(AssetError::Field { offset: 11 }),
         }
         let shell = match field(12)? {
             0 => Shell::Fat,
@@ -66,6 +75,7 @@ impl Grid<'_> {
             stored_depth: depth,
             shell,
             two_sided: flags & 1 != 0,
+            attribute_bits,
             radius: Length::from_bits(i64::from(radius) << 4),
             extents: match extents {
                 0 => [Length::ONE; 3],

@@ -2,6 +2,7 @@
 //! levels above it.
 
 use super::coded::{Coding, Dictionary};
+use super::colours::Colours;
 use super::node::{halves, has_stray_bits, is_part, occupied};
 use super::records::Records;
 use super::section::{Section, u32_at};
@@ -23,6 +24,8 @@ pub struct Level<'a> {
     pub drawn: &'a [u16],
     /// Attributes of the cells of this depth n: material << 13 | normal code.
     pub attributes: &'a [u16],
+    /// As many colours, if samples have some.
+    pub colours: Colours<'a>,
     /// `nodes` and `drawn` of tri-grids that are not coded, whose records are
     /// words; else empty.
     pub(crate) words: [&'a [u32]; 2],
@@ -43,6 +46,7 @@ pub(super) struct Shape {
     /// Whether it has an array of drawn records besides its nodes.
     pub stores_drawn: bool,
     pub material_count: u8,
+    pub attribute_bits: u8,
 }
 
 /// What follows from the levels above.
@@ -71,6 +75,7 @@ impl<'a> Level<'a> {
         nodes: &[],
         drawn: &[],
         attributes: &[],
+        colours: Colours::None,
         words: [&[]; 2],
     };
 
@@ -126,7 +131,7 @@ impl<'a> Stored<'a> {
         let depth = above.len() as u8;
         let stored = if section.kind == SECTION_CODED_LEVEL {
             let dictionary = dictionary.ok_or(AssetError::Dictionary { offset })?;
-            Coding::split(counts, shape.stores_drawn, section, dictionary)
+            Coding::split(shape, counts, section, dictionary)
         } else {
             Self::split(shape, counts, section)
         };
@@ -147,6 +152,7 @@ impl<'a> Stored<'a> {
             stored.check_drawn(shape.rho, depth)?;
         }
         stored.check_attributes(depth, shape.material_count)?;
+        stored.level.colours.check(depth)?;
         Ok(stored)
     }
 
@@ -162,12 +168,14 @@ impl<'a> Stored<'a> {
             false => (nodes, rest),
         };
         let (attributes, rest) = split_halves(rest, cells)?;
+        let (colours, rest) = Colours::split(rest, shape.attribute_bits, cells)?;
         rest.is_empty().then_some(())?;
         let level = Level {
             links: bytemuck::try_cast_slice(links).ok()?,
             nodes,
             drawn,
             attributes,
+            colours,
             words: match shape.rho {
                 3 => [
                     bytemuck::try_cast_slice(nodes).ok()?,

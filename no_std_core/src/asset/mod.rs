@@ -15,7 +15,7 @@
 //! | 8 | 1 | kind: 1 grid |
 //! | 9 | 1 | rho, 2 to 5 |
 //! | 10 | 1 | depth: subdivisions below the root cell (level + 1) |
-//! | 11 | 1 | attribute bits, 16 |
+//! | 11 | 1 | attribute bits: 16, 32 with a 16-bit colour, 48 with a 24-bit colour |
 //! | 12 | 1 | shell: 0 fat, 1 thin |
 //! | 13 | 1 | source axis that points up: 0 x, 1 y, 2 z |
 //! | 14 | 1 | flags: bit 0 two-sided |
@@ -40,8 +40,10 @@
 //! | nodes: occupancy of each cell of depth n - 1 (see [`node`]) | N(n - 1) records |
 //! | drawn: which of these children are drawn at this depth; see below | N(n - 1) records, none in a fat asset, where n = 0, and where n is the header's depth |
 //! | attributes: material << 13 \| normal code of each cell of depth n | N(n) 16-bit words |
+//! | colours, of 32-bit attributes: red << 11 \| green << 5 \| blue of each | N(n) 16-bit words |
+//! | colours, of 48-bit attributes: red \| green << 8 \| blue << 16 of each | N(n) 32-bit words |
 //!
-//! Nodes, drawn and attributes are each padded to four bytes with zeros. Cells
+//! Nodes, drawn, attributes and colours are each padded to four bytes with zeros. Cells
 //! are stored breadth-first: children of one cell are contiguous, the drawn
 //! ones first, both kinds in the order of their mask bits (x fastest, then y,
 //! then z), and so are all grandchildren. Kinds 3 and 4, of tri-grids alone,
@@ -72,6 +74,7 @@
 //! file is cut, its finest level has both kinds, and its leaves are the drawn.
 
 pub mod coded;
+mod colours;
 mod error;
 mod header;
 mod level;
@@ -79,6 +82,7 @@ pub mod node;
 mod records;
 mod section;
 
+pub use colours::Colours;
 pub use error::AssetError;
 pub use level::Level;
 pub use records::{Record, Records};
@@ -163,6 +167,7 @@ pub struct Grid<'a> {
     stored_depth: u8,
     shell: Shell,
     two_sided: bool,
+    attribute_bits: u8,
     radius: Length,
     extents: [Length; 3],
     materials: [Rgb; MAX_MATERIALS],
@@ -233,6 +238,7 @@ impl<'a> Grid<'a> {
             shell: self.shell,
             stores_drawn: stores_drawn(self.shell, levels, self.stored_depth),
             material_count: self.material_count,
+            attribute_bits: self.attribute_bits,
         };
         let offset = section.offset;
         let (done, rest) = self
@@ -287,6 +293,11 @@ impl<'a> Grid<'a> {
     /// Whether every surface is drawn from both sides.
     pub fn two_sided(&self) -> bool {
         self.two_sided
+    }
+
+    /// Bits of a sample's attribute: 16, or with a colour of its own 32 or 48.
+    pub fn attribute_bits(&self) -> u8 {
+        self.attribute_bits
     }
 
     /// Distance of the farthest vertex from the centre, in half sides of the

@@ -5,6 +5,8 @@ use std::vec::Vec;
 
 #[cfg(all(feature = "rho-3", feature = "mask-dictionary"))]
 mod coded;
+#[cfg(all(feature = "rho-3", feature = "colour"))]
+mod colours;
 mod cut;
 mod left_out;
 mod levels;
@@ -160,7 +162,7 @@ fn wrong_headers_are_named() {
         refused(&with_byte(&file, 9, rho), AssetError::Rho { rho });
     }
     refused(&with_byte(&file, 10, 10), AssetError::Depth { depth: 10 });
-    for (offset, value) in [(11, 32), (12, 2), (13, 3), (14, 2), (19, 0xff)] {
+    for (offset, value) in [(11, 24), (12, 2), (13, 3), (14, 2), (19, 0xff)] {
         let start = offset as u32 & !(u32::from(offset == 19) * 3);
         refused(
             &with_byte(&file, offset, value),

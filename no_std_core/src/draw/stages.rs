@@ -3,28 +3,27 @@
 //! costs a few dozen instructions a strip.
 
 use super::Light;
-use crate::asset::Rgb;
-use crate::canvas::Canvas;
+use crate::canvas::{Canvas, Pixel};
 use crate::plan::Plan;
-use crate::shade::Shader;
+use crate::shade::{Paint, Shader};
 use crate::target::{Picture, Rect};
 
 /// The colours of a frame.
 #[inline(never)]
-pub(super) fn shade<'a>(light: &Light, materials: &[Rgb], memory: &'a mut [u16]) -> Shader<'a> {
-    Shader::new(light, materials, memory)
+pub(super) fn shade<'a>(light: &Light, paint: Paint<'a>, memory: &'a mut [u16]) -> Shader<'a> {
+    Shader::new(light, paint, memory)
 }
 
 /// A clear canvas for a strip.
 #[inline(never)]
-pub(super) fn clear(words: &mut [u32], strip: Rect) -> Canvas<'_> {
+pub(super) fn clear<P: Pixel>(words: &mut [u32], strip: Rect) -> Canvas<'_, P> {
     Canvas::new(words, strip)
 }
 
 /// A strip's pixels from its canvas.
 #[inline(never)]
-pub(super) fn resolve(
-    canvas: &Canvas<'_>,
+pub(super) fn resolve<P: Pixel>(
+    canvas: &Canvas<'_, P>,
     strip: Rect,
     plan: &Plan,
     shader: &Shader<'_>,

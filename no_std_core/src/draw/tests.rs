@@ -7,6 +7,8 @@ use std::vec::Vec;
 
 #[cfg(all(feature = "rho-3", feature = "mask-dictionary"))]
 mod coded;
+#[cfg(feature = "colour")]
+mod coloured;
 mod hidden;
 mod twin;
 

@@ -12,6 +12,7 @@ use super::tables::Point;
 use super::traverse::{Cell, Frame};
 use crate::asset::Shell;
 use crate::asset::node::APERTURE_ALL;
+use crate::canvas::Pixel;
 use crate::numbers::SCREEN_BITS;
 use crate::reciprocal::Reciprocal;
 
@@ -147,7 +148,7 @@ impl Affine {
 /// Fraction bits of dw / w.
 const RATIO_BITS: i32 = 24;
 
-impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
+impl<const CELLS: usize, const LEVELS: usize, P: Pixel> Frame<'_, CELLS, LEVELS, P> {
     /// Fills the map around a cell whose place is given, for subtrees of SPAN
     /// levels with their bottom at a depth. `false` if they do not fit a window.
     #[inline(never)]

@@ -15,17 +15,18 @@ use super::subtree::Subtree;
 use super::traverse::Frame;
 use crate::asset::Level;
 use crate::asset::coded::Coding;
+use crate::canvas::Pixel;
 use crate::stats::Stats;
 
 /// Memory for one subtree, as much as a cell has subcells.
-pub(super) struct Queue<'t, 'a> {
+pub(super) struct Queue<'t, 'a, P: Pixel> {
     /// Where a cell's children lie.
     pub places: &'t mut [u32],
     /// Those that are drawn.
-    pub blocks: &'t mut [Block<'a>],
+    pub blocks: &'t mut [Block<'a, P>],
 }
 
-impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
+impl<'a, const CELLS: usize, const LEVELS: usize, P: Pixel> Frame<'a, CELLS, LEVELS, P> {
     /// The children of the subtree's cell; without those that face away, if
     /// any may. `level` is that of their own children, which are drawn.
     #[inline(never)]
@@ -34,9 +35,9 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
         subtree: &Subtree<'_, '_, RHO>,
         level: &Level<'a>,
         start: u32,
-        queue: &'q mut Queue<'_, 'a>,
+        queue: &'q mut Queue<'_, 'a, P>,
         stats: &mut Stats,
-    ) -> &'q [Block<'a>] {
+    ) -> &'q [Block<'a, P>] {
         if let Some(coding) = self.coding::<RHO>(subtree.depth + 2) {
             return self.coded_blocks::<RHO, FACES>(subtree, level, coding, start, queue, stats);
         }
@@ -54,9 +55,9 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
         subtree: &Subtree<'_, '_, RHO>,
         level: &Level<'a>,
         start: u32,
-        queue: &'q mut Queue<'_, 'a>,
+        queue: &'q mut Queue<'_, 'a, P>,
         stats: &mut Stats,
-    ) -> &'q [Block<'a>] {
+    ) -> &'q [Block<'a, P>] {
         let records = PhantomData::<S>;
         self.read_blocks::<RHO, FACES, _>(subtree, level, records, start, queue, stats)
     }
@@ -70,9 +71,9 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
         level: &Level<'a>,
         coding: &Coding<'a>,
         start: u32,
-        queue: &'q mut Queue<'_, 'a>,
+        queue: &'q mut Queue<'_, 'a, P>,
         stats: &mut Stats,
-    ) -> &'q [Block<'a>] {
+    ) -> &'q [Block<'a, P>] {
         self.read_blocks::<RHO, FACES, _>(subtree, level, coding, start, queue, stats)
     }
 
@@ -83,9 +84,9 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
         level: &Level<'a>,
         reader: R,
         start: u32,
-        queue: &'q mut Queue<'_, 'a>,
+        queue: &'q mut Queue<'_, 'a, P>,
         stats: &mut Stats,
-    ) -> &'q [Block<'a>] {
+    ) -> &'q [Block<'a, P>] {
         let Some(children) = self.children::<RHO, R>(subtree, level, reader, start, queue.places)
         else {
             return &[];
@@ -95,6 +96,7 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
         let mut kept = Kept {
             free: queue.blocks.iter_mut(),
             attributes: level.attributes.get(link..).unwrap_or(&[]),
+            sample: P::sample(subtree.depth + 2, link),
         };
         let normals = FACES.then_some(&subtree.normals);
         if RHO > 3 {
@@ -184,13 +186,15 @@ impl<R: Reader> Children<'_, R> {
 }
 
 /// Where blocks go.
-struct Kept<'q, 'a> {
-    free: slice::IterMut<'q, Block<'a>>,
+struct Kept<'q, 'a, P: Pixel> {
+    free: slice::IterMut<'q, Block<'a, P>>,
     /// Attributes of their children and those behind.
     attributes: &'a [u16],
+    /// The first of these.
+    sample: P::Sample,
 }
 
-impl Kept<'_, '_> {
+impl<P: Pixel> Kept<'_, '_, P> {
     /// Keeps those of up to 32 cells that do not face away; all without
     /// normals.
     #[inline(always)]
@@ -212,6 +216,8 @@ impl Kept<'_, '_> {
                 return;
             };
             self.attributes = others;
+            let sample = self.sample;
+            self.sample = P::ahead(sample, count);
             let is_kept = bits & 1 != 0;
             bits >>= 1;
             if is_kept
@@ -223,6 +229,7 @@ impl Kept<'_, '_> {
                     place,
                     record,
                     attributes,
+                    sample,
                 };
             }
         }
@@ -231,12 +238,12 @@ impl Kept<'_, '_> {
 
 /// The cell itself, whose children, in `level`, are drawn.
 #[inline(always)]
-pub(super) fn block<'q, 'a, const RHO: u8>(
+pub(super) fn block<'q, 'a, const RHO: u8, P: Pixel>(
     subtree: &Subtree<'_, '_, RHO>,
     level: &Level<'a>,
     start: u32,
-    queue: &'q mut Queue<'_, 'a>,
-) -> &'q [Block<'a>] {
+    queue: &'q mut Queue<'_, 'a, P>,
+) -> &'q [Block<'a, P>] {
     let Subtree { spot, record, .. } = subtree;
     let count = record.drawn.count();
     let attributes = level.attributes.get(spot.first_child..);
@@ -253,6 +260,7 @@ pub(super) fn block<'q, 'a, const RHO: u8>(
             _ => spot.index as u32,
         },
         attributes,
+        sample: P::sample(subtree.depth + 1, spot.first_child),
     }];
     own
 }

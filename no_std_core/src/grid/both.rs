@@ -12,7 +12,7 @@ use super::record::Record;
 use super::samples::Block;
 use super::traverse::{Cell, Frame, Output, with_frame};
 use crate::asset::Grid;
-use crate::canvas::Canvas;
+use crate::canvas::{Canvas, Pixel};
 use crate::numbers::Length;
 use crate::plan::Plan;
 use crate::projection::Projection;
@@ -21,44 +21,44 @@ use crate::stats::Stats;
 
 /// Draws a grid on a clear canvas and into a map: see
 /// [`traverse`](super::traverse) and [`cast`](super::cast()).
-pub(crate) fn traverse_and_cast<'a>(
+pub(crate) fn traverse_and_cast<'a, P: Pixel>(
     grid: &'a Grid<'a>,
     view: ([Length; 3], &Projection, &Plan),
     light: (&CastForms, Option<[i32; 3]>, &mut Map<'_>),
-    canvas: &mut Canvas<'_>,
+    canvas: &mut Canvas<'_, P>,
     stats: &mut Stats,
 ) {
     match grid.rho() {
         #[cfg(feature = "rho-2")]
-        2 => run::<2, 8, 15>(grid, view, light, canvas, stats),
+        2 => run::<2, 8, 15, P>(grid, view, light, canvas, stats),
         #[cfg(feature = "rho-3")]
-        3 => run::<3, 27, 9>(grid, view, light, canvas, stats),
+        3 => run::<3, 27, 9, P>(grid, view, light, canvas, stats),
         #[cfg(feature = "rho-4")]
-        4 => run::<4, 64, 7>(grid, view, light, canvas, stats),
+        4 => run::<4, 64, 7, P>(grid, view, light, canvas, stats),
         #[cfg(feature = "rho-5")]
-        5 => run::<5, 125, 6>(grid, view, light, canvas, stats),
+        5 => run::<5, 125, 6, P>(grid, view, light, canvas, stats),
         // None opens.
         _ => {}
     }
 }
 
 #[inline(never)]
-fn run<'a, const RHO: u8, const CELLS: usize, const LEVELS: usize>(
+fn run<'a, const RHO: u8, const CELLS: usize, const LEVELS: usize, P: Pixel>(
     grid: &'a Grid<'a>,
     view: ([Length; 3], &Projection, &Plan),
     (forms, away, map): (&CastForms, Option<[i32; 3]>, &mut Map<'_>),
-    canvas: &mut Canvas<'_>,
+    canvas: &mut Canvas<'_, P>,
     stats: &mut Stats,
 ) {
     let mut casting = Stats::default();
     let strip = canvas.strip;
-    with_frame::<RHO, CELLS, LEVELS>(grid, view, strip, |frame, root| {
+    with_frame::<RHO, CELLS, LEVELS, P>(grid, view, strip, |frame, root| {
         let mut output = Output {
             canvas,
             stats,
             queue: Queue {
                 places: &mut [0; CELLS],
-                blocks: &mut [Block::NONE; CELLS],
+                blocks: &mut [Block::none(); CELLS],
             },
         };
         let light = (map, &mut casting);
@@ -67,7 +67,7 @@ fn run<'a, const RHO: u8, const CELLS: usize, const LEVELS: usize>(
             match caster.first::<RHO>() {
                 Some((record, attribute)) if frame.plan.depth > 0 => {
                     let cells = (root, &cast_root);
-                    node::<RHO, _, _>(frame, caster, cells, (&record, attribute), &mut output);
+                    node::<RHO, _, _, _>(frame, caster, cells, (&record, attribute), &mut output);
                 }
                 first => {
                     frame.start::<RHO>(root, &mut output);
@@ -81,12 +81,12 @@ fn run<'a, const RHO: u8, const CELLS: usize, const LEVELS: usize>(
 }
 
 /// Visits an intermediate cell, as the eye and as the light see it.
-fn node<'a, const RHO: u8, const CELLS: usize, const LEVELS: usize>(
-    frame: &Frame<'a, CELLS, LEVELS>,
+fn node<'a, const RHO: u8, const CELLS: usize, const LEVELS: usize, P: Pixel>(
+    frame: &Frame<'a, CELLS, LEVELS, P>,
     caster: &mut Caster<'_, '_, '_, CELLS, LEVELS>,
     (cell, cast_cell): (&Cell, &cast::Cell),
     (record, attribute): (&Record<RHO>, u16),
-    output: &mut Output<'_, '_, 'a>,
+    output: &mut Output<'_, '_, 'a, P>,
 ) {
     let seen = frame.seen(cell, record, attribute, output.stats);
     let is_lit = caster.is_lit(record.flags, attribute);
@@ -118,7 +118,7 @@ fn node<'a, const RHO: u8, const CELLS: usize, const LEVELS: usize>(
                 centre,
             };
             let cells = (&child, &cast_child);
-            node::<RHO, _, _>(frame, caster, cells, (record, attribute), output);
+            node::<RHO, _, _, _>(frame, caster, cells, (record, attribute), output);
         }
     });
 }

@@ -6,6 +6,7 @@ use super::tables::{LevelTable, Point};
 use super::traverse::{Cell, Frame};
 use crate::asset::coded::Coding;
 use crate::asset::{Grid, Level};
+use crate::canvas::Pixel;
 
 /// Where a child is: in its parent and in its level.
 #[derive(Clone, Copy)]
@@ -70,7 +71,7 @@ pub(super) fn coding<'a, const RHO: u8>(grid: &'a Grid<'_>, depth: u8) -> Option
     }
 }
 
-impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
+impl<'a, const CELLS: usize, const LEVELS: usize, P: Pixel> Frame<'a, CELLS, LEVELS, P> {
     /// Visits the children of a cell with their records: see [`children`].
     #[inline(always)]
     pub(super) fn for_each_child<const RHO: u8>(

@@ -9,18 +9,18 @@ use super::affine::Affine;
 use super::footprint::Place;
 use super::packed::Brush;
 use super::traverse::Frame;
-use crate::canvas::Canvas;
+use crate::canvas::{Canvas, Pixel};
 use crate::numbers::SCREEN_BITS;
 
 /// What rounding moves a packed place by, at most, Q20.12 pixels: see
 /// [`super::packed::Subcells`].
 const ROUNDING: i32 = 9 << (SCREEN_BITS - 5);
 
-impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
+impl<const CELLS: usize, const LEVELS: usize, P: Pixel> Frame<'_, CELLS, LEVELS, P> {
     /// Whether nothing of a subtree that lies at a place would show. Its depths
     /// fit their field there.
     #[inline(always)]
-    pub(super) fn is_hidden(&self, place: &Place, affine: &Affine, canvas: &Canvas<'_>) -> bool {
+    pub(super) fn is_hidden(&self, place: &Place, affine: &Affine, canvas: &Canvas<'_, P>) -> bool {
         if !self.plan.hides {
             return false;
         }
@@ -33,7 +33,7 @@ impl<const CELLS: usize, const LEVELS: usize> Frame<'_, CELLS, LEVELS> {
 
 /// Whether all pixels that a subtree may touch show more than a word.
 #[inline(never)]
-fn is_behind(place: &Place, affine: &Affine, canvas: &Canvas<'_>, word: u32) -> bool {
+fn is_behind<P: Pixel>(place: &Place, affine: &Affine, canvas: &Canvas<'_, P>, word: u32) -> bool {
     let pixels = |at: i32, reach: i32, is_two: bool| {
         // Half a pixel back and one ahead: see [`Brush`].
         let at = at - if is_two { 1 << (SCREEN_BITS - 1) } else { 0 };

@@ -8,10 +8,11 @@ use super::record::Record;
 use super::tables::Point;
 use super::traverse::{Cell, Frame, Output};
 use crate::asset::node::{APERTURE_ALL, Flags};
+use crate::canvas::Pixel;
 use crate::reciprocal::reciprocal;
 use crate::splat::{Extent, Splat, draw};
 
-impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
+impl<'a, const CELLS: usize, const LEVELS: usize, P: Pixel> Frame<'a, CELLS, LEVELS, P> {
     /// Draws the children of a cell as splats of their own size.
     #[inline(never)]
     pub(super) fn leaves<const RHO: u8>(
@@ -19,7 +20,7 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
         cell: &Cell,
         record: &Record<RHO>,
         attribute: u16,
-        output: &mut Output<'_, '_, 'a>,
+        output: &mut Output<'_, '_, 'a, P>,
     ) {
         let below = usize::from(cell.depth) + 1;
         let level = self.grid.levels().get(below);
@@ -36,7 +37,11 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
             return;
         }
         let seen = Seen::new(cell.view, extents.eye_radius, record.flags, facing);
-        let leaves = Leaves { attributes, seen };
+        let leaves = Leaves {
+            attributes,
+            first: P::sample(cell.depth + 1, cell.first_child),
+            seen,
+        };
         let (near, w) = (self.projection.near, cell.centre.w);
         let nearest = w - extents.half_w;
         if nearest < near_limit(near, w) {
@@ -52,15 +57,11 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
             half: slopes.half(self.projection, reciprocal(nearest as u32), 1),
             rim_drop: rim_drop(self.projection, w, inverse, &table.half_edges),
         };
-        leaves.for_each(
-            record.drawn,
-            &table.displacements,
-            |displacement, attribute| {
-                let centre = cell.centre.plus(displacement);
-                let place = Place::of(self.projection, centre, reciprocal(centre.w as u32));
-                splat(place, &extent, attribute, output);
-            },
-        );
+        leaves.for_each(record.drawn, &table.displacements, |displacement, shown| {
+            let centre = cell.centre.plus(displacement);
+            let place = Place::of(self.projection, centre, reciprocal(centre.w as u32));
+            splat(place, &extent, shown, output);
+        });
     }
 
     /// Leaves of a near block: each has an extent of its own.
@@ -69,25 +70,31 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
         &self,
         cell: &Cell,
         drawn: Mask<RHO>,
-        leaves: &Leaves<'_>,
-        output: &mut Output<'_, '_, 'a>,
+        leaves: &Leaves<'_, P>,
+        output: &mut Output<'_, '_, 'a, P>,
     ) {
         let table = self.tables.below(cell.depth);
-        leaves.for_each(drawn, &table.displacements, |displacement, attribute| {
+        leaves.for_each(drawn, &table.displacements, |displacement, shown| {
             let centre = cell.centre.plus(displacement);
-            self.near_leaf(centre, &table.half_edges, attribute, output);
+            self.near_leaf(centre, &table.half_edges, shown, output);
         });
     }
 
     /// Draws the root alone, of which nothing tells what else it holds.
-    pub(super) fn lone_root(&self, root: &Cell, attribute: u16, output: &mut Output<'_, '_, 'a>) {
+    pub(super) fn lone_root(
+        &self,
+        root: &Cell,
+        attribute: u16,
+        output: &mut Output<'_, '_, 'a, P>,
+    ) {
         let extents = self.tables.extents(0);
         let flags = Flags {
             aperture: APERTURE_ALL,
             two_sided: true,
         };
         let seen = Seen::new(root.view, extents.eye_radius, flags, Facing::Maybe);
-        self.near_leaf(root.centre, extents.half_edges, seen.own(attribute), output);
+        let shown = (seen.own(attribute), P::sample(0, 0));
+        self.near_leaf(root.centre, extents.half_edges, shown, output);
     }
 
     /// Draws a leaf that may be near, unless its centre is behind the near
@@ -96,8 +103,8 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
         &self,
         centre: Point,
         half_edges: &[Point; 3],
-        attribute: u16,
-        output: &mut Output<'_, '_, 'a>,
+        shown: (u16, P::Sample),
+        output: &mut Output<'_, '_, 'a, P>,
     ) {
         let near = self.projection.near;
         if centre.w < near {
@@ -117,13 +124,18 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
             half_edges,
             nearest.max(near),
         );
-        splat(place, &extent, attribute, output);
+        splat(place, &extent, shown, output);
     }
 }
 
 /// Hands a sample to the splatter.
 #[inline(always)]
-fn splat(place: Place, extent: &Extent, attribute: u16, output: &mut Output<'_, '_, '_>) {
+fn splat<P: Pixel>(
+    place: Place,
+    extent: &Extent,
+    (attribute, sample): (u16, P::Sample),
+    output: &mut Output<'_, '_, '_, P>,
+) {
     output.stats.samples_drawn += 1;
     output.stats.splats_drawn += 1;
     let splat = Splat {
@@ -131,6 +143,7 @@ fn splat(place: Place, extent: &Extent, attribute: u16, output: &mut Output<'_, 
         y: place.y,
         depth: place.depth as u16,
         attribute,
+        sample,
     };
     draw(output.canvas, &splat, extent);
 }
@@ -179,27 +192,33 @@ impl Seen {
 }
 
 /// A block's leaves in mask order.
-struct Leaves<'a> {
+struct Leaves<'a, P: Pixel> {
     attributes: &'a [u16],
+    /// The first of them.
+    first: P::Sample,
     seen: Seen,
 }
 
-impl Leaves<'_> {
-    /// Visits the displacements and attributes of the leaves that are seen.
+impl<P: Pixel> Leaves<'_, P> {
+    /// Visits the displacements of the leaves that are seen, with what they show:
+    /// an attribute, and the sample.
     #[inline(always)]
     fn for_each<const RHO: u8>(
         &self,
         drawn: Mask<RHO>,
         displacements: &[Point],
-        mut visit: impl FnMut(Point, u16),
+        mut visit: impl FnMut(Point, (u16, P::Sample)),
     ) {
         let mut attributes = self.attributes.iter();
+        let mut next = self.first;
         for (word, displacements) in drawn.words().zip(displacements.chunks(mask::cells(RHO))) {
             for (bit, &attribute) in mask::bits(word).zip(attributes.by_ref()) {
+                let sample = next;
+                next = P::ahead(sample, 1);
                 if let (Some(&displacement), Some(attribute)) =
                     (displacements.get(bit), self.seen.leaf(attribute))
                 {
-                    visit(displacement, attribute);
+                    visit(displacement, (attribute, sample));
                 }
             }
         }

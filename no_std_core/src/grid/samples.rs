@@ -9,12 +9,12 @@ use super::packed::Subcells;
 use super::record::{Stored, record_of};
 use crate::asset::Level;
 use crate::asset::node::Flags;
-use crate::canvas::{PITCH, Window};
+use crate::canvas::{PITCH, Pixel, Window};
 use crate::normal::OPPOSITE;
 
 /// A cell whose children are drawn.
 #[derive(Clone, Copy)]
-pub(super) struct Block<'a> {
+pub(super) struct Block<'a, P: Pixel> {
     /// Its centre as a word, with the brush's offset.
     pub place: u32,
     /// Its drawn record where that is one word, else the record's index in the
@@ -22,15 +22,21 @@ pub(super) struct Block<'a> {
     pub record: u32,
     /// Attributes of the children that are drawn.
     pub attributes: &'a [u16],
+    /// The first of these children.
+    pub sample: P::Sample,
 }
 
-impl Block<'_> {
+impl<P: Pixel> Block<'_, P> {
     /// To be overwritten.
-    pub const NONE: Self = Self {
-        place: 0,
-        record: 0,
-        attributes: &[],
-    };
+    #[inline(always)]
+    pub fn none() -> Self {
+        Self {
+            place: 0,
+            record: 0,
+            attributes: &[],
+            sample: P::sample(0, 0),
+        }
+    }
 
     /// Its drawn record. `level` is its children's.
     #[inline(always)]
@@ -68,19 +74,19 @@ impl Pen {
     /// word stays: the nearer one, whichever comes first, and of equal depths
     /// always the same.
     #[inline(always)]
-    fn dab<const COLUMNS: usize, const ROWS: usize>(
+    fn dab<const COLUMNS: usize, const ROWS: usize, P: Pixel>(
         &self,
         place: u32,
-        attribute: u16,
-        window: &mut Window,
+        (attribute, sample): (u16, P::Sample),
+        window: &mut Window<P>,
     ) {
         let first = (place >> 20 & self.pixel) as usize;
         let word = place << 16 | u32::from(attribute);
         for row in 0..ROWS {
             for column in 0..COLUMNS {
                 let pixel = &mut window[first + row * PITCH + column];
-                if word > *pixel {
-                    *pixel = word;
+                if word > pixel.word() {
+                    *pixel = P::new(word, sample);
                 }
             }
         }
@@ -89,15 +95,16 @@ impl Pen {
     /// Draws the children of a block. `seen` tells whether a sample shows, how,
     /// and how much deeper.
     #[inline(always)]
-    fn draw<const RHO: u8, const COLUMNS: usize, const ROWS: usize>(
+    fn draw<const RHO: u8, const COLUMNS: usize, const ROWS: usize, P: Pixel>(
         &self,
-        block: &Block<'_>,
+        block: &Block<'_, P>,
         drawn: Mask<RHO>,
         subcells: &Subcells,
         mut seen: impl FnMut(u16) -> Option<(u16, u32)>,
-        window: &mut Window,
+        window: &mut Window<P>,
     ) {
         let mut rest = block.attributes;
+        let mut sample = block.sample;
         for (word, &middle) in drawn.words().zip(&subcells.words) {
             // One word has as many cells as there are attributes.
             let count = match mask::words(RHO) {
@@ -118,8 +125,10 @@ impl Pen {
                 let slot = self.walk.lowest(&mut slots);
                 let place = middle.wrapping_add(subcells.cells[slot]);
                 if let Some((attribute, deeper)) = seen(attribute) {
-                    self.dab::<COLUMNS, ROWS>(place.wrapping_sub(deeper), attribute, window);
+                    let place = place.wrapping_sub(deeper);
+                    self.dab::<COLUMNS, ROWS, P>(place, (attribute, sample), window);
                 }
+                sample = P::ahead(sample, 1);
             }
         }
     }
@@ -128,9 +137,9 @@ impl Pen {
 /// Draws the children of blocks; gives how many are drawn. `level` is the
 /// children's.
 #[inline(never)]
-pub(super) fn draw_blocks<const RHO: u8, const COLUMNS: usize, const ROWS: usize>(
-    window: &mut Window,
-    blocks: &[Block<'_>],
+pub(super) fn draw_blocks<const RHO: u8, const COLUMNS: usize, const ROWS: usize, P: Pixel>(
+    window: &mut Window<P>,
+    blocks: &[Block<'_, P>],
     affine: &Affine,
     level: &Level<'_>,
     normals: &Normals,
@@ -143,10 +152,10 @@ pub(super) fn draw_blocks<const RHO: u8, const COLUMNS: usize, const ROWS: usize
         let (mask, flags) = block.drawn::<RHO>(level);
         if flags.aperture >= both_ways {
             let seen = (normals, flags.is_sheet());
-            drawn -= draw_both_ways::<RHO, COLUMNS, ROWS>(block, mask, affine, seen, window);
+            drawn -= draw_both_ways::<RHO, COLUMNS, ROWS, P>(block, mask, affine, seen, window);
         } else {
             let as_it_is = |attribute| Some((attribute, 0));
-            pen.draw::<RHO, COLUMNS, ROWS>(block, mask, &affine.leaves, as_it_is, window);
+            pen.draw::<RHO, COLUMNS, ROWS, P>(block, mask, &affine.leaves, as_it_is, window);
         }
     }
     drawn
@@ -157,12 +166,12 @@ pub(super) fn draw_blocks<const RHO: u8, const COLUMNS: usize, const ROWS: usize
 /// their own: where a wall has samples of its own on either side, the far side's
 /// do not show between the near side's.
 #[inline(never)]
-fn draw_both_ways<const RHO: u8, const COLUMNS: usize, const ROWS: usize>(
-    block: &Block<'_>,
+fn draw_both_ways<const RHO: u8, const COLUMNS: usize, const ROWS: usize, P: Pixel>(
+    block: &Block<'_, P>,
     drawn: Mask<RHO>,
     affine: &Affine,
     (normals, is_sheet): (&Normals, bool),
-    window: &mut Window,
+    window: &mut Window<P>,
 ) -> u32 {
     let pen = Pen::new();
     let mut away = 0;
@@ -171,7 +180,7 @@ fn draw_both_ways<const RHO: u8, const COLUMNS: usize, const ROWS: usize>(
             true => Some((attribute ^ OPPOSITE, affine.far_side)),
             false => Some((attribute, 0)),
         };
-        pen.draw::<RHO, COLUMNS, ROWS>(block, drawn, &affine.leaves, either_side, window);
+        pen.draw::<RHO, COLUMNS, ROWS, P>(block, drawn, &affine.leaves, either_side, window);
     } else {
         let own_side = |attribute| match normals.faces_away(attribute) {
             true => {
@@ -180,7 +189,7 @@ fn draw_both_ways<const RHO: u8, const COLUMNS: usize, const ROWS: usize>(
             }
             false => Some((attribute, 0)),
         };
-        pen.draw::<RHO, COLUMNS, ROWS>(block, drawn, &affine.leaves, own_side, window);
+        pen.draw::<RHO, COLUMNS, ROWS, P>(block, drawn, &affine.leaves, own_side, window);
     }
     away
 }

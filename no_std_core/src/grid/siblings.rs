@@ -12,9 +12,10 @@ use super::octave::Octave;
 use super::record::Record;
 use super::subtree::Subtree;
 use super::traverse::{Cell, Frame, Output};
+use crate::canvas::Pixel;
 use crate::reciprocal::reciprocal;
 
-impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
+impl<'a, const CELLS: usize, const LEVELS: usize, P: Pixel> Frame<'a, CELLS, LEVELS, P> {
     /// Draws what lies SPAN levels below the children of a cell. `false`, with
     /// nothing done, if such subtrees do not fit a window.
     #[inline(never)]
@@ -23,7 +24,7 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
         cell: &Cell,
         record: &Record<RHO>,
         normals: &Normals,
-        output: &mut Output<'_, '_, 'a>,
+        output: &mut Output<'_, '_, 'a, P>,
     ) -> bool {
         let inverse = reciprocal(cell.centre.w as u32);
         let place = Place::of(self.projection, cell.centre, inverse);
@@ -103,7 +104,7 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
         &self,
         cell: &Cell,
         subtree: &Subtree<'_, 'a, RHO>,
-        output: &mut Output<'_, '_, 'a>,
+        output: &mut Output<'_, '_, 'a, P>,
     ) {
         // It is counted again.
         output.stats.nodes_visited -= 1;

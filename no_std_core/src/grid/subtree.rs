@@ -11,10 +11,11 @@ use super::record::Record;
 use super::samples::draw_blocks;
 use super::traverse::{Cell, Frame, Output};
 use crate::asset::Level;
+use crate::canvas::Pixel;
 use crate::numbers::SCREEN_BITS;
 use crate::reciprocal::reciprocal;
 
-impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
+impl<'a, const CELLS: usize, const LEVELS: usize, P: Pixel> Frame<'a, CELLS, LEVELS, P> {
     /// Draws the descendants of a cell, SPAN levels down, as points. `false`,
     /// with nothing done, if they do not fit a window.
     #[inline(never)]
@@ -24,7 +25,7 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
         record: &Record<RHO>,
         attribute: u16,
         normals: &Normals,
-        output: &mut Output<'_, '_, 'a>,
+        output: &mut Output<'_, '_, 'a, P>,
     ) -> bool {
         let bottom = cell.depth + SPAN as u8;
         let Some(level) = self.level(bottom) else {
@@ -72,7 +73,7 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
         &self,
         subtree: &Subtree<'_, 'a, RHO>,
         place: &Place,
-        output: &mut Output<'_, '_, 'a>,
+        output: &mut Output<'_, '_, 'a, P>,
     ) {
         let affine = subtree.affine;
         let start = place.step().packed_in_window();
@@ -86,14 +87,14 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
         let level = subtree.level;
         let (queue, stats) = (&mut output.queue, &mut *output.stats);
         let blocks = match (SPAN, subtree.facing) {
-            (1, _) => block::<RHO>(subtree, level, start, queue),
+            (1, _) => block::<RHO, P>(subtree, level, start, queue),
             (_, Facing::Toward) => self.blocks::<RHO, false>(subtree, level, start, queue, stats),
             _ => self.blocks::<RHO, true>(subtree, level, start, queue, stats),
         };
         let draw = match affine.brush {
-            Brush::Point => draw_blocks::<RHO, 1, 1>,
-            Brush::Wide => draw_blocks::<RHO, 2, 1>,
-            Brush::Square => draw_blocks::<RHO, 2, 2>,
+            Brush::Point => draw_blocks::<RHO, 1, 1, P>,
+            Brush::Wide => draw_blocks::<RHO, 2, 1, P>,
+            Brush::Square => draw_blocks::<RHO, 2, 2, P>,
         };
         output.stats.samples_drawn += draw(window, blocks, affine, level, &subtree.normals);
     }

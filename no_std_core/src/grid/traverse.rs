@@ -8,6 +8,8 @@
 //! ([`super::packed`]) where that is exact enough; above them what is nearest
 //! to the eye comes first, and what it hides is [not visited](super::hidden).
 
+use core::marker::PhantomData;
+
 use super::blocks::Queue;
 use super::children::coding;
 use super::clip::{Clip, Side};
@@ -19,7 +21,7 @@ use super::samples::Block;
 use super::tables::{Point, Tables};
 use crate::asset::Grid;
 use crate::asset::coded::Coding;
-use crate::canvas::Canvas;
+use crate::canvas::{Canvas, Pixel};
 use crate::numbers::Length;
 use crate::plan::Plan;
 use crate::projection::Projection;
@@ -27,19 +29,21 @@ use crate::stats::Stats;
 use crate::target::Rect;
 
 /// Everything that a strip's traversal reads.
-pub(super) struct Frame<'a, const CELLS: usize, const LEVELS: usize> {
+pub(super) struct Frame<'a, const CELLS: usize, const LEVELS: usize, P> {
     pub grid: &'a Grid<'a>,
     pub projection: &'a Projection,
     pub plan: &'a Plan,
     pub tables: &'a Tables<CELLS, LEVELS>,
     pub clip: &'a Clip<LEVELS>,
+    /// What is drawn on.
+    pub pixels: PhantomData<P>,
 }
 
 /// What a strip's traversal writes.
-pub(super) struct Output<'t, 'c, 'a> {
-    pub canvas: &'t mut Canvas<'c>,
+pub(super) struct Output<'t, 'c, 'a, P: Pixel> {
+    pub canvas: &'t mut Canvas<'c, P>,
     pub stats: &'t mut Stats,
-    pub queue: Queue<'t, 'a>,
+    pub queue: Queue<'t, 'a, P>,
 }
 
 /// A cell on the way down.
@@ -58,45 +62,45 @@ pub(super) struct Cell {
 }
 
 /// Draws a grid on a clear canvas, seen by an eye in model space.
-pub(crate) fn traverse(
+pub(crate) fn traverse<P: Pixel>(
     grid: &Grid<'_>,
     eye: [Length; 3],
     projection: &Projection,
     plan: &Plan,
-    canvas: &mut Canvas<'_>,
+    canvas: &mut Canvas<'_, P>,
     stats: &mut Stats,
 ) {
     match grid.rho() {
         #[cfg(feature = "rho-2")]
-        2 => run::<2, 8, 15>(grid, eye, projection, plan, canvas, stats),
+        2 => run::<2, 8, 15, P>(grid, eye, projection, plan, canvas, stats),
         #[cfg(feature = "rho-3")]
-        3 => run::<3, 27, 9>(grid, eye, projection, plan, canvas, stats),
+        3 => run::<3, 27, 9, P>(grid, eye, projection, plan, canvas, stats),
         #[cfg(feature = "rho-4")]
-        4 => run::<4, 64, 7>(grid, eye, projection, plan, canvas, stats),
+        4 => run::<4, 64, 7, P>(grid, eye, projection, plan, canvas, stats),
         #[cfg(feature = "rho-5")]
-        5 => run::<5, 125, 6>(grid, eye, projection, plan, canvas, stats),
+        5 => run::<5, 125, 6, P>(grid, eye, projection, plan, canvas, stats),
         // None opens.
         _ => {}
     }
 }
 
 #[inline(never)]
-fn run<const RHO: u8, const CELLS: usize, const LEVELS: usize>(
+fn run<const RHO: u8, const CELLS: usize, const LEVELS: usize, P: Pixel>(
     grid: &Grid<'_>,
     eye: [Length; 3],
     projection: &Projection,
     plan: &Plan,
-    canvas: &mut Canvas<'_>,
+    canvas: &mut Canvas<'_, P>,
     stats: &mut Stats,
 ) {
     let view = (eye, projection, plan);
-    with_frame::<RHO, CELLS, LEVELS>(grid, view, canvas.strip, |frame, root| {
+    with_frame::<RHO, CELLS, LEVELS, P>(grid, view, canvas.strip, |frame, root| {
         let mut output = Output {
             canvas,
             stats,
             queue: Queue {
                 places: &mut [0; CELLS],
-                blocks: &mut [Block::NONE; CELLS],
+                blocks: &mut [Block::none(); CELLS],
             },
         };
         frame.start::<RHO>(root, &mut output);
@@ -105,11 +109,11 @@ fn run<const RHO: u8, const CELLS: usize, const LEVELS: usize>(
 
 /// Sets a strip's traversal up.
 #[inline(always)]
-pub(super) fn with_frame<'a, const RHO: u8, const CELLS: usize, const LEVELS: usize>(
+pub(super) fn with_frame<'a, const RHO: u8, const CELLS: usize, const LEVELS: usize, P>(
     grid: &'a Grid<'a>,
     (eye, projection, plan): ([Length; 3], &Projection, &Plan),
     strip: Rect,
-    visit: impl FnOnce(&Frame<'_, CELLS, LEVELS>, &Cell),
+    visit: impl FnOnce(&Frame<'_, CELLS, LEVELS, P>, &Cell),
 ) {
     let eye_space = EyeSpace::new(eye);
     let mut tables = Tables::EMPTY;
@@ -123,18 +127,19 @@ pub(super) fn with_frame<'a, const RHO: u8, const CELLS: usize, const LEVELS: us
         view: eye_space.centre,
         inside: projection.holds_cube(strip),
     };
-    let frame = Frame::<CELLS, LEVELS> {
+    let frame = Frame::<CELLS, LEVELS, P> {
         grid,
         projection,
         plan,
         tables: &tables,
         clip: &clip,
+        pixels: PhantomData,
     };
     visit(&frame, &root);
 }
 
-impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
-    pub(super) fn start<const RHO: u8>(&self, root: &Cell, output: &mut Output<'_, '_, 'a>) {
+impl<'a, const CELLS: usize, const LEVELS: usize, P: Pixel> Frame<'a, CELLS, LEVELS, P> {
+    pub(super) fn start<const RHO: u8>(&self, root: &Cell, output: &mut Output<'_, '_, 'a, P>) {
         let levels = self.grid.levels();
         let (Some(top), next) = (levels.first(), levels.get(1)) else {
             return;
@@ -159,7 +164,7 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
         cell: &Cell,
         record: &Record<RHO>,
         attribute: u16,
-        output: &mut Output<'_, '_, 'a>,
+        output: &mut Output<'_, '_, 'a, P>,
     ) {
         if let Some((cell, normals)) = self.seen(cell, record, attribute, output.stats) {
             self.visit_below(&cell, record, attribute, &normals, output);
@@ -210,7 +215,7 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
         record: &Record<RHO>,
         attribute: u16,
         normals: &Normals,
-        output: &mut Output<'_, '_, 'a>,
+        output: &mut Output<'_, '_, 'a, P>,
     ) {
         if !self.draws_below::<RHO>(cell, record, attribute, normals, output) {
             self.for_each_child_nearest_first::<RHO>(cell, record, |child, record, attribute| {
@@ -228,7 +233,7 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
         record: &Record<RHO>,
         attribute: u16,
         normals: &Normals,
-        output: &mut Output<'_, '_, 'a>,
+        output: &mut Output<'_, '_, 'a, P>,
     ) -> bool {
         let w = cell.centre.w;
         let stops = |levels| w >= self.plan.stop(cell.depth + levels);
@@ -275,7 +280,7 @@ impl<'a, const CELLS: usize, const LEVELS: usize> Frame<'a, CELLS, LEVELS> {
     /// Whether a subtree centred at a place may touch the strip or what counts
     /// around it.
     #[inline(always)]
-    pub(super) fn is_near_strip(&self, place: &Place, output: &Output<'_, '_, 'a>) -> bool {
+    pub(super) fn is_near_strip(&self, place: &Place, output: &Output<'_, '_, 'a, P>) -> bool {
         use crate::canvas::REACH;
         use crate::numbers::SCREEN_BITS;
         let strip = output.canvas.strip;

@@ -3,7 +3,7 @@
 use core::ops::Range;
 
 use super::{Gap, Neighbourhood, OWN, hole, inner, is_far_from_holes, mean};
-use crate::canvas::Canvas;
+use crate::canvas::{Canvas, Pixel};
 use crate::scene::MAX_LAMPS;
 use crate::shade::Shader;
 use crate::shadow::{Receiver, Row};
@@ -26,24 +26,24 @@ impl Shadowed<'_> {
             .map(|receiver| Some(receiver.as_ref()?.row(column, row)))
     }
 
-    /// The colour of a word of the canvas at the index-th pixel of a row.
-    fn colour(&self, rows: &Rows, index: usize, word: u32) -> u16 {
+    /// The colour of a pixel of the canvas, the index-th of a row.
+    fn colour<P: Pixel>(&self, rows: &Rows, index: usize, pixel: P) -> u16 {
         let mut unlit = 0;
         for (bit, (receiver, row)) in self.receivers.iter().zip(rows).enumerate() {
             if let (Some(receiver), Some(row)) = (receiver, row)
-                && receiver.is_shadowed(row, index, word)
+                && receiver.is_shadowed(row, index, pixel.word())
             {
                 unlit |= 1 << bit;
             }
         }
-        self.shader.colour_without(word as u16, unlit)
+        pixel.colour(self.shader, unlit)
     }
 }
 
 /// Writes a strip's colours and depths where they are nearer than what is
 /// there.
-pub(crate) fn merge(
-    canvas: &Canvas<'_>,
+pub(crate) fn merge<P: Pixel>(
+    canvas: &Canvas<'_, P>,
     repair: Option<Gap>,
     shadowed: &Shadowed<'_>,
     picture: &mut Picture<'_>,
@@ -52,40 +52,39 @@ pub(crate) fn merge(
     let (columns, rows) = canvas.touched();
     let mut above = [0; 2];
     for row in rows {
-        let Some(words) = canvas.neighbourhoods(&columns, row) else {
+        let Some(pixels) = canvas.neighbourhoods(&columns, row) else {
             return;
         };
         let Some((colours, depths)) = picture.layer(columns.clone(), row) else {
             return;
         };
         let mut line = Line {
-            words,
+            pixels,
             repair,
-            inner: inner(words, &mut above, colours.len()),
+            inner: inner(pixels, &mut above, colours.len()),
             colours,
             depths,
         };
         match shadowed.receivers {
-            [None, None, None] => line.merge(|_, word| shadowed.shader.colour(word as u16)),
+            [None, None, None] => line.merge(|_, pixel| pixel.colour(shadowed.shader, 0)),
             [Some(receiver), None, None] => {
                 let row = receiver.row(columns.start, row);
-                line.merge(|index, word| {
-                    let unlit = receiver.is_shadowed(&row, index, word);
-                    let attribute = word as u16;
-                    shadowed.shader.colour_without(attribute, unlit.into())
+                line.merge(|index, pixel| {
+                    let unlit = receiver.is_shadowed(&row, index, pixel.word());
+                    pixel.colour(shadowed.shader, unlit.into())
                 });
             }
             _ => {
                 let maps = shadowed.rows(columns.start, row);
-                line.merge(|index, word| shadowed.colour(&maps, index, word));
+                line.merge(|index, pixel| shadowed.colour(&maps, index, pixel));
             }
         }
     }
 }
 
 /// A row on its way into the picture.
-struct Line<'l> {
-    words: &'l [u32],
+struct Line<'l, P> {
+    pixels: &'l [P],
     repair: Option<Gap>,
     /// The pixels that may show something.
     inner: Range<usize>,
@@ -93,24 +92,24 @@ struct Line<'l> {
     depths: &'l mut [u16],
 }
 
-impl Line<'_> {
+impl<P: Pixel> Line<'_, P> {
     #[inline(never)]
-    fn merge(&mut self, colour: impl Fn(usize, u32) -> u16) {
+    fn merge(&mut self, colour: impl Fn(usize, P) -> u16) {
         let inner = self.inner.clone();
-        let (Some(words), Some(colours), Some(depths)) = (
-            self.words.get(inner.start..),
+        let (Some(pixels), Some(colours), Some(depths)) = (
+            self.pixels.get(inner.start..),
             self.colours.get_mut(inner.clone()),
             self.depths.get_mut(inner.clone()),
         ) else {
             return;
         };
-        let pixels = colours.iter_mut().zip(depths).zip(words.array_windows());
-        for (((own, depth), around), index) in pixels.zip(inner.start..) {
+        let places = colours.iter_mut().zip(depths).zip(pixels.array_windows());
+        for (((own, depth), around), index) in places.zip(inner.start..) {
             let (hole, shown) = match self.repair {
                 Some(gap) => shown(around, gap),
                 None => (None, around[OWN]),
             };
-            let nearer = (shown >> 16) as u16;
+            let nearer = (shown.word() >> 16) as u16;
             if nearer > *depth {
                 *depth = nearer;
                 *own = match hole {
@@ -122,15 +121,21 @@ impl Line<'_> {
     }
 }
 
-/// What closes a pixel, if it is a hole, and the word that its depth is of.
+/// What closes a pixel, if it is a hole, and the pixel that its depth is of.
 #[inline(always)]
-fn shown(around: &Neighbourhood, gap: Gap) -> (Option<[u32; 2]>, u32) {
+fn shown<P: Pixel>(around: &Neighbourhood<P>, gap: Gap) -> (Option<[P; 2]>, P) {
     let own = around[OWN];
-    if own != 0 && is_far_from_holes(around, gap) {
+    if own.word() != 0 && is_far_from_holes(around, gap) {
         return (None, own);
     }
     match hole(around, gap) {
-        Some([first, second]) => (Some([first, second]), first.min(second)),
+        Some([first, second]) => {
+            let deeper = match first.word() < second.word() {
+                true => first,
+                false => second,
+            };
+            (Some([first, second]), deeper)
+        }
         None => (None, own),
     }
 }

@@ -3,6 +3,7 @@ use crate::asset::Rgb;
 use crate::canvas::canvas_len;
 use crate::draw::Light;
 use crate::numbers::{Unit, Weight};
+use crate::shade::Paint;
 use crate::splat::{Extent, Splat, draw};
 use crate::target::{Rect, Target};
 use crate::testing::Rng;
@@ -62,7 +63,11 @@ fn pixels_are_those_of_the_definition() {
         diffuse: Weight::lit("0.8"),
     };
     let mut shades = std::vec![0; crate::draw::shades_len(8)];
-    let shader = Shader::new(&light, &MATERIALS, &mut shades);
+    let shader = Shader::new(&light, Paint::Materials(&MATERIALS), &mut shades);
+    let colour_of = |word: u32| match word {
+        0 => 0,
+        _ => shader.colour(word as u16),
+    };
     let mut closed = 0;
     for case in 0..600 {
         let (width, height) = (rng.u16(1..40), rng.u16(1..24));
@@ -78,7 +83,7 @@ fn pixels_are_those_of_the_definition() {
             bottom: height,
         };
         let mut memory = std::vec![0; canvas_len(height)];
-        let mut canvas = Canvas::new(&mut memory, strip);
+        let mut canvas = Canvas::<u32>::new(&mut memory, strip);
         // What counts around the strip, too.
         let mut words = std::vec![std::vec![0; usize::from(width) + 2]; usize::from(height) + 4];
         for (y, row) in words.iter_mut().enumerate() {
@@ -96,6 +101,7 @@ fn pixels_are_those_of_the_definition() {
                     y: pixel(y, 2),
                     depth,
                     attribute,
+                    sample: (),
                 };
                 let extent = Extent {
                     half: [0; 2],
@@ -115,7 +121,7 @@ fn pixels_are_those_of_the_definition() {
             let (x, y) = (index % usize::from(width), index / usize::from(width));
             let want = shown(&words, x + 1, y + 2, gap);
             closed += usize::from(want.len() == 2);
-            let colours: Vec<u16> = want.iter().map(|&word| shader.colour_of(word)).collect();
+            let colours: Vec<u16> = want.iter().map(|&word| colour_of(word)).collect();
             let channel = |shift: u32, bits: u16| {
                 let sum: u16 = colours.iter().map(|colour| colour >> shift & bits).sum();
                 sum / want.len() as u16

@@ -2,7 +2,7 @@
 
 use super::{Instance, MAX_LAMPS, Scene, order};
 use crate::camera::Camera;
-use crate::canvas::Canvas;
+use crate::canvas::{Canvas, Pixel};
 use crate::divisor::Divisor;
 use crate::draw::Quality;
 use crate::grid::{cast, traverse, traverse_and_cast};
@@ -11,7 +11,7 @@ use crate::placement::{Inverse, NormalMap};
 use crate::plan::Plan;
 use crate::projection::{DepthToW, Projection, Sight};
 use crate::resolve::{Shadowed, merge};
-use crate::shade::Shader;
+use crate::shade::{Paint, Shader};
 use crate::shadow::{
     CastForms, LightSpace, Map, Method, PictureForms, Receiver, Sphere, bias, edge,
 };
@@ -90,10 +90,20 @@ fn one_pass_order(
     let is_asked_for = scene.shadows.method == Method::OnePass;
     let mut spaces = maps.maps.iter().flatten().map(|map| map.space);
     match (spaces.next(), spaces.next()) {
-        (Some(space), None) if is_asked_for && target.strips().nth(1).is_none() => {
+        (Some(space), None) if is_asked_for && is_one_strip(scene, target) => {
             order::along(&space, scene.instances)
         }
         _ => None,
+    }
+}
+
+/// Whether every instance is drawn in one strip.
+fn is_one_strip(scene: &Scene<'_>, target: &Layers<'_>) -> bool {
+    let words = target.canvas_len();
+    let mut paints = scene.instances.iter().map(|instance| instance.paint(words));
+    match paints.any(|paint| matches!(paint, Paint::Samples(_))) {
+        true => target.strips::<[u32; 2]>().nth(1).is_none(),
+        false => target.strips::<u32>().nth(1).is_none(),
     }
 }
 
@@ -118,15 +128,31 @@ impl InstanceFrame<'_> {
         target: &mut Layers<'_>,
         stats: &mut Stats,
     ) {
+        match self.instance.paint(target.canvas_len()) {
+            paint @ Paint::Samples(_) => {
+                self.draw_on::<[u32; 2]>((paint, shades), maps, target, stats);
+            }
+            paint => self.draw_on::<u32>((paint, shades), maps, target, stats),
+        }
+    }
+
+    /// The same with pixels of one kind.
+    #[inline(always)]
+    fn draw_on<P: Pixel>(
+        &self,
+        (paint, shades): (Paint<'_>, &mut [u16]),
+        maps: &mut Maps<'_>,
+        target: &mut Layers<'_>,
+        stats: &mut Stats,
+    ) {
         let grid = self.instance.grid;
         let plan = Plan::with(grid, self.camera, self.quality, &self.projection);
         let shades = if plan.tabulates { shades } else { &mut [] };
-        let colours = self.instance.colours();
-        let shader = Shader::placed(&self.scene.lighting, &self.normals, colours, shades);
+        let shader = Shader::placed(&self.scene.lighting, &self.normals, paint, shades);
         let to_w = DepthToW::new(&self.projection);
-        for strip in target.strips() {
+        for strip in target.strips::<P>() {
             let (canvas, picture) = target.parts();
-            let mut canvas = Canvas::new(canvas, strip.intersection(plan.part));
+            let mut canvas = Canvas::<P>::new(canvas, strip.intersection(plan.part));
             self.traverse(&plan, maps, &mut canvas, stats);
             let shadowed = Shadowed {
                 shader: &shader,
@@ -136,11 +162,11 @@ impl InstanceFrame<'_> {
         }
     }
 
-    fn traverse(
+    fn traverse<P: Pixel>(
         &self,
         plan: &Plan,
         maps: &mut Maps<'_>,
-        canvas: &mut Canvas<'_>,
+        canvas: &mut Canvas<'_, P>,
         stats: &mut Stats,
     ) {
         let grid = self.instance.grid;

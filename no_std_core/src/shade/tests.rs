@@ -25,8 +25,8 @@ fn table_holds_what_direct_shading_gives_within_one_of_float() {
         let towards = direction(&mut rng);
         let light = light(towards, ambient, diffuse);
         let mut memory = std::vec![0; CODES * 8];
-        let table = Shader::new(&light, &materials, &mut memory);
-        let direct = Shader::new(&light, &materials, &mut []);
+        let table = Shader::new(&light, Paint::Materials(&materials), &mut memory);
+        let direct = Shader::new(&light, Paint::Materials(&materials), &mut []);
         for attribute in 0..=u16::MAX {
             let got = table.colour(attribute);
             assert_eq!(got, direct.colour(attribute), "{attribute:#x} in {light:?}");
@@ -56,7 +56,7 @@ fn memory_that_is_too_short_is_not_used() {
     let light = light([0.0, 1.0, 0.0], 0.2, 0.8);
     let mut memory = std::vec![0xabcd; CODES * 2 - 1];
     let materials = [[255; 3]; 2];
-    let shader = Shader::new(&light, &materials, &mut memory);
+    let shader = Shader::new(&light, Paint::Materials(&materials), &mut memory);
     assert!(shader.table.is_empty());
     assert!(memory.iter().all(|&word| word == 0xabcd));
 }
@@ -67,7 +67,7 @@ fn brightness_grows_with_the_cosine() {
     for _ in 0..20 {
         let light = light(direction(&mut rng), rng.f64() / 2.0, rng.f64());
         let materials = [[255, 200, 90]];
-        let shader = Shader::new(&light, &materials, &mut []);
+        let shader = Shader::new(&light, Paint::Materials(&materials), &mut []);
         let mut all: std::vec::Vec<_> = (0..CODES as u16)
             .map(|code| {
                 let cosine = shader.model.lamps[0].cosine(decode(code));
@@ -91,7 +91,9 @@ fn brightness_grows_with_the_cosine() {
 fn extremes_saturate() {
     let up = crate::normal::encode([0, 1 << 20, 0]);
     let down = up ^ crate::normal::OPPOSITE;
-    let colour = |light: &Light, code| Shader::new(light, &[[255; 3]], &mut []).colour(code);
+    let colour = |light: &Light, code| {
+        Shader::new(light, Paint::Materials(&[[255; 3]]), &mut []).colour(code)
+    };
     let full = light([0.0, 1.0, 0.0], 0.2, 0.8);
     assert_eq!(colour(&full, up), WHITE);
     assert_eq!(channels(colour(&full, down)), [6, 13, 6]);
@@ -100,7 +102,7 @@ fn extremes_saturate() {
     assert_eq!(colour(&twice, down), WHITE);
     let none = light([0.0, 1.0, 0.0], 0.0, 0.0);
     assert_eq!(colour(&none, up), 0);
-    let black = Shader::new(&twice, &[[0; 3]], &mut []).colour(up);
+    let black = Shader::new(&twice, Paint::Materials(&[[0; 3]]), &mut []).colour(up);
     assert_eq!(black, 0);
     // A material that is not there is black, not a fault.
     assert_eq!(colour(&full, up | 7 << 13), 0);
@@ -115,7 +117,7 @@ fn senseless_lights_do_no_harm() {
                 ambient: weight,
                 diffuse: weight,
             };
-            let shader = Shader::new(&light, &[[255; 3]], &mut []);
+            let shader = Shader::new(&light, Paint::Materials(&[[255; 3]]), &mut []);
             for code in 0..CODES as u16 {
                 let lit = dot(
                     decode(code).map(f64::from),

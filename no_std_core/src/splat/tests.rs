@@ -12,7 +12,7 @@ const DROP: u16 = 10;
 struct Board {
     words: Vec<u32>,
     strip: Rect,
-    splats: Vec<(Splat, Extent)>,
+    splats: Vec<(Splat<()>, Extent)>,
 }
 
 impl Board {
@@ -29,7 +29,7 @@ impl Board {
         }
     }
 
-    fn draw(&mut self, splat: &Splat, extent: &Extent) {
+    fn draw(&mut self, splat: &Splat<()>, extent: &Extent) {
         self.splats.push((*splat, *extent));
     }
 
@@ -70,13 +70,14 @@ impl Board {
 }
 
 /// A splat at a place in pixels.
-fn at(x: f64, y: f64) -> Splat {
+fn at(x: f64, y: f64) -> Splat<()> {
     let bits = |v: f64| (v * f64::from(SCREEN_ONE)) as i32;
     Splat {
         x: bits(x),
         y: bits(y),
         depth: CORE,
         attribute: 7,
+        sample: (),
     }
 }
 
@@ -91,7 +92,7 @@ fn half(x: f64, y: f64) -> Extent {
 
 #[test]
 fn coverage_is_that_of_pixel_centres() {
-    let cases: [(Splat, Extent, [&str; 5]); 9] = [
+    let cases: [(Splat<()>, Extent, [&str; 5]); 9] = [
         // Nearly nothing: the home pixel, wherever in it the centre lies.
         (
             at(3.0, 2.0),
@@ -205,6 +206,7 @@ fn splats_that_tile_leave_no_gap() {
                     y: first[1] + 2 * half_side[1] * row,
                     depth: CORE,
                     attribute: 7,
+                    sample: (),
                 };
                 canvas.draw(&splat, &extent);
             }
@@ -275,6 +277,7 @@ fn saturated_places_and_extents_do_not_overflow() {
                     y,
                     depth: CORE,
                     attribute: 7,
+                    sample: (),
                 };
                 let extent = Extent {
                     half: [side, side],

@@ -19,6 +19,8 @@ pub(crate) struct CodedLevel {
     pub nodes: Vec<u16>,
     pub drawn: Vec<u16>,
     pub attributes: Vec<u16>,
+    /// As bytes.
+    pub colours: Vec<u8>,
 }
 
 impl CodedLevel {
@@ -35,6 +37,7 @@ impl CodedLevel {
         for halves in [&self.links, &self.nodes, &self.drawn, &self.attributes] {
             extend_padded(&mut bytes, halves.iter().copied());
         }
+        bytes.extend(&self.colours);
         bytes
     }
 }
@@ -116,6 +119,7 @@ impl Coder {
         }
         let attributes = model.levels[depth].iter().map(|cell| cell.attribute);
         level.attributes = attributes.collect();
+        level.colours = model.colours(&model.levels[depth]);
         level
     }
 

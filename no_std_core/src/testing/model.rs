@@ -33,6 +33,8 @@ pub(crate) struct Model {
     pub rho: u8,
     pub shell: Shell,
     pub materials: Vec<Rgb>,
+    /// Of a sample; of more than 16, its colour is its material's.
+    pub attribute_bits: u8,
     pub levels: Vec<Vec<Cell>>,
 }
 
@@ -87,6 +89,7 @@ impl Model {
             rho,
             shell: Shell::Fat,
             materials: std::vec![[255; 3]],
+            attribute_bits: 16,
             levels,
         }
     }
@@ -258,6 +261,28 @@ impl Model {
             }
         }
         extend_padded(&mut bytes, cells.iter().map(|cell| cell.attribute));
+        bytes.extend(self.colours(cells));
+        bytes
+    }
+
+    /// The colours of cells as a level holds them.
+    pub fn colours(&self, cells: &[Cell]) -> Vec<u8> {
+        let colours = cells.iter().map(|cell| {
+            let material = self.materials.get(usize::from(cell.attribute >> 13));
+            material.copied().unwrap_or([0; 3])
+        });
+        let mut bytes = Vec::new();
+        match self.attribute_bits {
+            32 => extend_padded(
+                &mut bytes,
+                colours.map(|[red, green, blue]| {
+                    let [red, green, blue] = [red >> 3, green >> 2, blue >> 3].map(u16::from);
+                    red << 11 | green << 5 | blue
+                }),
+            ),
+            48 => bytes.extend(colours.flat_map(|[red, green, blue]| [red, green, blue, 0])),
+            _ => {}
+        }
         bytes
     }
 
@@ -269,7 +294,7 @@ impl Model {
         header[8] = KIND_GRID;
         header[9] = self.rho;
         header[10] = self.depth();
-        header[11] = 16;
+        header[11] = self.attribute_bits;
         header[12] = u8::from(self.shell == Shell::Thin);
         header[13] = 1;
         header[16..20].copy_from_slice(&(1u32 << 28).to_le_bytes());

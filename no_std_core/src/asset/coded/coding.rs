@@ -1,7 +1,8 @@
 //! A coded level's tables, checked, and what its codes stand for.
 
 use super::{BASE_LINKS, FIRST_ESCAPE, FLAGS, MASK_BITS, MAX_MASKS, START_CODES};
-use crate::asset::level::{Counts, Level, Stored, split_halves};
+use crate::asset::colours::Colours;
+use crate::asset::level::{Counts, Level, Shape, Stored, split_halves};
 use crate::asset::section::{Section, u32_at};
 use crate::asset::{AssetError, max_depth};
 
@@ -51,11 +52,12 @@ impl<'a> Coding<'a> {
     /// Cuts a coded level's section into its parts; `None` where sizes do not
     /// fit.
     pub(in crate::asset) fn split(
+        shape: Shape,
         counts: Counts,
-        stores_drawn: bool,
         section: &Section<'a>,
         dictionary: Dictionary<'a>,
     ) -> Option<Stored<'a>> {
+        let stores_drawn = shape.stores_drawn;
         let cells = u32_at(section.bytes, 0)? as usize;
         let escapes = u32_at(section.bytes, 4)? as usize;
         let rest = section.bytes.get(8..)?;
@@ -74,6 +76,7 @@ impl<'a> Coding<'a> {
             false => (nodes, rest),
         };
         let (attributes, rest) = split_halves(rest, cells)?;
+        let (colours, rest) = Colours::split(rest, shape.attribute_bits, cells)?;
         rest.is_empty().then_some(())?;
         let flags = flags.first_chunk()?;
         let coding = Self {
@@ -90,6 +93,7 @@ impl<'a> Coding<'a> {
             nodes,
             drawn,
             attributes,
+            colours,
             words: [&[]; 2],
         };
         Some(Stored {

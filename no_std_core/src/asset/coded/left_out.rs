@@ -5,7 +5,7 @@ use core::convert::Infallible;
 use core::marker::PhantomData;
 
 use crate::asset::AssetError;
-use crate::asset::level::{Counts, Level, Stored};
+use crate::asset::level::{Counts, Level, Shape, Stored};
 use crate::asset::section::Section;
 
 /// A dictionary that is never there.
@@ -31,8 +31,8 @@ pub struct Coding<'a>(Infallible, PhantomData<&'a ()>);
 
 impl<'a> Coding<'a> {
     pub(in crate::asset) fn split(
+        _: Shape,
         _: Counts,
-        _: bool,
         _: &Section<'a>,
         dictionary: Dictionary<'a>,
     ) -> Option<Stored<'a>> {

@@ -24,6 +24,26 @@ fn exactly_what_is_built_opens() {
     }
 }
 
+/// Where colours are left out, what has some does not open.
+#[test]
+#[cfg(feature = "rho-3")]
+fn colours_open_where_they_are_built() {
+    let mut rng = Rng::with_seed(55);
+    let mut model = Model::random(&mut rng, 3, 2, 20.0);
+    for bits in [32, 48] {
+        model.attribute_bits = bits;
+        let bytes = aligned(&model.file().bytes());
+        let want = match cfg!(feature = "colour") {
+            true => Ok(bits),
+            false => Err(AssetError::LeftOut {
+                offset: 11,
+                feature: "colour",
+            }),
+        };
+        assert_eq!(Grid::open(&bytes).map(|grid| grid.attribute_bits()), want);
+    }
+}
+
 /// A file with a dictionary opens where its feature is built; cut before the
 /// dictionary, everywhere.
 #[test]
