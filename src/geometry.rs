@@ -2,6 +2,7 @@
 //! points, y up, in source units, checked finite by import.
 
 use glam::{DVec3, Vec3};
+use rhogrid_core::asset::Rgb;
 
 /// A surface material: a diffuse colour without gamma. The renderer's
 /// materials number at most eight (3 bits of a 16-bit attribute).
@@ -10,7 +11,7 @@ pub struct Material {
     /// Name in the source file, or empty.
     pub name: String,
     /// Diffuse red, green, blue, 0 to 255.
-    pub diffuse: [u8; 3],
+    pub diffuse: Rgb,
 }
 
 impl Material {
@@ -46,6 +47,9 @@ pub struct Mesh {
     pub triangles: Vec<Triangle>,
     /// One to eight materials.
     pub materials: Vec<Material>,
+    /// Colours of all triangles' corners, which take the place of materials'
+    /// where samples hold colours; empty without any.
+    pub colours: Vec<[Rgb; 3]>,
     /// Whether back faces are seen, whatever is asked for: leaves, say.
     pub two_sided: bool,
 }
@@ -64,6 +68,8 @@ pub struct OrientedPoint {
 pub struct Cloud {
     /// The points.
     pub points: Vec<OrientedPoint>,
+    /// As many colours; empty without any.
+    pub colours: Vec<Rgb>,
     /// Whether backs are seen, whatever is asked for: normals of unknown sign.
     pub two_sided: bool,
 }
@@ -179,6 +185,14 @@ impl Geometry {
                 corners.map(|at| mesh.positions[at as usize]).collect()
             }
             Self::Cloud(cloud) => cloud.points.iter().map(|point| point.position).collect(),
+        }
+    }
+
+    /// Whether it has colours besides materials'.
+    pub fn has_colours(&self) -> bool {
+        match self {
+            Self::Mesh(mesh) => !mesh.colours.is_empty(),
+            Self::Cloud(cloud) => !cloud.colours.is_empty(),
         }
     }
 

@@ -9,7 +9,7 @@ use rhogrid_core::asset::coded::{
 };
 use rhogrid_core::asset::{SECTION_CODED_LEVEL, SECTION_DICTIONARY};
 
-use super::writer::{Linked, extend_padded, extend_words, plain};
+use super::writer::{Linked, extend_colours, extend_padded, extend_words, plain};
 
 /// Most levels that are coded: the third has a hundredth of all records, and
 /// cones of every aperture.
@@ -137,7 +137,7 @@ impl Codes<'_> {
 }
 
 fn level(linked: &Linked<'_>, flags: &[u32], places: &HashMap<u32, u16>) -> Vec<u8> {
-    let Linked { level, links } = linked;
+    let Linked { level, links, .. } = linked;
     let mut coder = Codes {
         flags,
         places,
@@ -162,5 +162,6 @@ fn level(linked: &Linked<'_>, flags: &[u32], places: &HashMap<u32, u16>) -> Vec<
     for halves in [&narrow, &nodes, &drawn, &level.attributes] {
         extend_padded(&mut bytes, halves);
     }
+    extend_colours(&mut bytes, linked);
     bytes
 }

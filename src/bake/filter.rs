@@ -4,8 +4,8 @@
 //! bottom-up: the nearest point's normal stands for that point alone, while a
 //! cell's splat shows all that it holds.
 //!
-//! Changes here: normals alone are filtered, and only where the mean tells
-//! something; materials stay the nearest point's. A cell's cone holds what may
+//! Changes here: normals are filtered only where the mean tells something;
+//! colours always are, and materials stay the nearest point's. A cell's cone holds what may
 //! be drawn below it, wherever drawing stops: the samples of its drawn
 //! descendants. Cells whose children hold opposed faces are sheets: never
 //! skipped, drawn from both sides, and their faces count in the cones above,
@@ -15,6 +15,7 @@
 
 use glam::I64Vec3;
 use rayon::prelude::*;
+use rhogrid_core::asset::Rgb;
 use rhogrid_core::asset::node::{APERTURE_ALL, Flags};
 use rhogrid_core::normal::{CODE_MASK, COMPONENT_BITS, decode};
 
@@ -34,6 +35,8 @@ const SHORTEST_MEAN: f64 = 0.7;
 struct Below {
     /// Sum of the normals of all drawn leaf samples, Q2.14.
     sum: I64Vec3,
+    /// Sum of their colours.
+    colours: [u64; 3],
     /// How many leaves that are.
     leaves: u32,
     /// Codes of what the cell's cone holds, sorted, each once.
@@ -51,18 +54,35 @@ impl Below {
             own.codes.push(child.attribute & CODE_MASK);
             if parts.is_empty() {
                 own.sum += I64Vec3::from_array(decode(child.attribute).map(i64::from));
+                own.add_colours(child.colour.map(u64::from));
                 own.leaves += 1;
             }
         }
         for part in parts {
             own.codes.extend(&part.codes);
             own.sum += part.sum;
+            own.add_colours(part.colours);
             own.leaves += part.leaves;
         }
         own.codes.extend(faces);
         own.codes.sort_unstable();
         own.codes.dedup();
         own
+    }
+
+    fn add_colours(&mut self, colours: [u64; 3]) {
+        for (sum, channel) in self.colours.iter_mut().zip(colours) {
+            *sum += channel;
+        }
+    }
+
+    /// The leaves' mean colour; the cell's own if none is drawn.
+    fn filtered_colour(&self, own: Rgb) -> Rgb {
+        let leaves = u64::from(self.leaves);
+        match leaves {
+            0 => own,
+            _ => self.colours.map(|sum| ((sum + leaves / 2) / leaves) as u8),
+        }
     }
 
     /// An attribute with the leaves' mean normal, if that tells something.
@@ -78,7 +98,7 @@ impl Below {
 
 /// Filters the samples of all levels but the finest, and gives the cells above
 /// each level their cones and two-sided flags; two-sided assets skip nothing.
-/// Where normals are to be the nearest points', samples stay.
+/// Where attributes are to be the nearest points', samples stay.
 ///
 /// A flag concerns a cell's drawn children, where drawing stops at them or the
 /// file is cut behind them. A filtered child may face away while some of what
@@ -104,6 +124,7 @@ pub(super) fn filter(levels: &mut [TouchedLevel], options: &GridOptions) {
             let own = Below::gather(children, parts, &record.faces);
             if options.normals == Normals::Filtered {
                 cell.attribute = own.filtered(cell.attribute);
+                cell.colour = own.filtered_colour(cell.colour);
             }
             let cosine = directions.least_cosine(cell.attribute, &own.codes);
             let mut drawn = children

@@ -55,6 +55,7 @@ pub(super) fn finish(rho: u8, shell: Shell, levels: &[TouchedLevel]) -> Vec<Bake
             .iter()
             .map(|&index| level.cells[index].attribute)
             .collect();
+        out.colours = own.iter().map(|&index| level.cells[index].colour).collect();
         baked.push(out);
         order = own;
     }

@@ -23,7 +23,7 @@ use crate::geometry::{Geometry, Material, Up};
 pub use shell::{BakedGrid, BakedLevel};
 pub use surface::{Aabb, Sample, Surface};
 
-/// Which normals intermediate samples have.
+/// Which normals and colours intermediate samples have.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Normals {
     /// The mean of the leaves below, where that tells something.
@@ -43,7 +43,7 @@ pub struct GridOptions {
     pub level: u8,
     /// Which cells to keep.
     pub shell: Shell,
-    /// Which normals intermediate samples have.
+    /// Which normals and colours intermediate samples have.
     pub normals: Normals,
     /// Draw every surface from both sides, as geometry may demand by itself.
     pub two_sided: bool,
@@ -52,6 +52,20 @@ pub struct GridOptions {
     pub up: Up,
     /// How masks are written.
     pub masks: Masks,
+    /// How wide a sample's attribute is; `None` for 16 bits, or 32 where the
+    /// geometry has colours.
+    pub attributes: Option<Attributes>,
+}
+
+/// How wide a sample's attribute is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Attributes {
+    /// 13-bit normal and 3-bit material.
+    Bits16,
+    /// With a 16-bit colour.
+    Bits32,
+    /// With a 24-bit colour.
+    Bits48,
 }
 
 /// How the masks of the finest levels are written.
@@ -74,6 +88,7 @@ impl Default for GridOptions {
             two_sided: false,
             up: Up::Y,
             masks: Masks::Plain,
+            attributes: None,
         }
     }
 }
@@ -128,6 +143,10 @@ pub fn grid(
         two_sided: options.two_sided,
         up: options.up,
         masks: options.masks,
+        attributes: options.attributes.unwrap_or(match geometry.has_colours() {
+            true => Attributes::Bits32,
+            false => Attributes::Bits16,
+        }),
         cube,
         materials: materials.iter().map(|material| material.diffuse).collect(),
     })

@@ -2,6 +2,7 @@
 //! one around each point, large enough to close the surface.
 
 use glam::{DVec3, Vec3};
+use rhogrid_core::asset::Rgb;
 
 use super::Cube;
 use super::overlap::triangle_touches;
@@ -19,6 +20,7 @@ struct Tile {
     normal: DVec3,
     /// Half of its sides.
     sides: [DVec3; 2],
+    colour: Rgb,
 }
 
 /// The points of a cloud.
@@ -36,12 +38,8 @@ impl CloudSurface {
         let places: Vec<DVec3> = places.collect();
         let rounded: Vec<Vec3> = places.iter().map(|place| place.as_vec3()).collect();
         let radii = disc_radii(&rounded);
-        let tiles = cloud
-            .points
-            .iter()
-            .zip(places)
-            .zip(radii)
-            .map(|((point, centre), radius)| {
+        let tiles = cloud.points.iter().zip(places).zip(radii).zip(0..).map(
+            |(((point, centre), radius), index): (_, usize)| {
                 let normal = point.normal.as_dvec3().normalize();
                 let first = normal.any_orthonormal_vector();
                 let half = f64::from(radius) * HALF_SIDE;
@@ -49,8 +47,10 @@ impl CloudSurface {
                     centre,
                     normal,
                     sides: [first * half, normal.cross(first) * half],
+                    colour: cloud.colours.get(index).copied().unwrap_or([255; 3]),
                 }
-            });
+            },
+        );
         Self {
             tiles: tiles.collect(),
         }
@@ -114,6 +114,7 @@ impl Surface for CloudSurface {
             distance_squared: (nearest - point).length_squared(),
             normal: tile.normal.as_vec3(),
             material: 0,
+            colour: tile.colour,
         }
     }
 

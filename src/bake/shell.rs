@@ -17,7 +17,7 @@ use super::finish::finish;
 use super::surface::{Aabb, Sample, Surface};
 use super::thin::{Standing, column, cross_hair, thin_subset};
 use super::touched::{Above, Touched, TouchedLevel};
-use super::{Cube, GridOptions, Masks, Progress, cone};
+use super::{Attributes, Cube, GridOptions, Masks, Progress, cone};
 use crate::geometry::Up;
 
 /// Cells whose primitives are gathered in one piece of work.
@@ -38,6 +38,8 @@ pub struct BakedGrid {
     pub up: Up,
     /// How masks are written.
     pub masks: Masks,
+    /// How wide a sample's attribute is.
+    pub attributes: Attributes,
     /// Where the grid lies in its source.
     pub cube: Cube,
     /// Diffuse colours, one to eight.
@@ -53,6 +55,8 @@ pub struct BakedLevel {
     pub drawn: Vec<u16>,
     /// Attributes of the cells.
     pub attributes: Vec<u16>,
+    /// Their colours, which 16-bit attributes do without.
+    pub colours: Vec<Rgb>,
 }
 
 /// How much a box grows with each doubling of the cells on an axis. A surface
@@ -64,6 +68,7 @@ const SLACK: f64 = 1e-12;
 struct Cell {
     place: [u32; 3],
     attribute: u16,
+    colour: Rgb,
     neighbourhood: Vec<u32>,
 }
 
@@ -97,18 +102,21 @@ pub(super) fn bake<S: Surface>(
 ) -> Vec<BakedLevel> {
     let baker = Baker { surface, options };
     let everything: Vec<u32> = (0..surface.count()).collect();
-    let attribute = baker.attribute(DVec3::ZERO, &everything);
+    let sample = baker.sample(DVec3::ZERO, &everything);
+    let (attribute, colour) = (attribute(&sample), sample.colour);
     let mut levels = vec![TouchedLevel {
         above: Vec::new(),
         cells: vec![Touched {
             bit: 0,
             is_thin: true,
             attribute,
+            colour,
         }],
     }];
     let mut cells = vec![Cell {
         place: [0; 3],
         attribute,
+        colour,
         neighbourhood: everything,
     }];
     for above in 0..depth {
@@ -151,6 +159,7 @@ fn touched(done: &mut [Subdivision]) -> TouchedLevel {
         bit: child.bit,
         is_thin: thin.next().unwrap_or(true),
         attribute: child.cell.attribute,
+        colour: child.cell.colour,
     });
     let cells = cells.collect();
     let above = done.iter_mut().map(|cell| Above {
@@ -209,6 +218,7 @@ impl<S: Surface> Baker<'_, S> {
             let cell = Cell {
                 place,
                 attribute: attribute(&sample),
+                colour: sample.colour,
                 neighbourhood: if leaves {
                     Vec::new()
                 } else {
@@ -269,6 +279,7 @@ impl<S: Surface> Baker<'_, S> {
                 distance_squared: f64::INFINITY,
                 normal: Vec3::Y,
                 material: 0,
+                colour: [255; 3],
             },
         );
         for (primitive, own) in near {
@@ -285,12 +296,12 @@ impl<S: Surface> Baker<'_, S> {
         found
     }
 
-    fn attribute(&self, centre: DVec3, primitives: &[u32]) -> u16 {
+    fn sample(&self, centre: DVec3, primitives: &[u32]) -> Sample {
         let bounded: Vec<(u32, Aabb)> = primitives
             .iter()
             .map(|&primitive| (primitive, self.surface.bounds(primitive)))
             .collect();
-        attribute(&self.nearest(centre, &bounded).1)
+        self.nearest(centre, &bounded).1
     }
 }
 

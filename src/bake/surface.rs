@@ -5,6 +5,7 @@
 //! centred, half side one.
 
 use glam::{DVec3, Vec3};
+use rhogrid_core::asset::Rgb;
 
 /// An axis-aligned box.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,6 +47,8 @@ pub struct Sample {
     pub normal: Vec3,
     /// Material index.
     pub material: u8,
+    /// Colour: the material's where geometry has no others.
+    pub colour: Rgb,
 }
 
 /// Geometry made of primitives, numbered from zero.

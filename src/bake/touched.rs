@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use rhogrid_core::asset::Rgb;
 use rhogrid_core::asset::node::Flags;
 
 /// A touched cell of a finished level.
@@ -11,6 +12,7 @@ pub(super) struct Touched {
     /// Whether it is drawn where drawing stops at its depth.
     pub is_thin: bool,
     pub attribute: u16,
+    pub colour: Rgb,
 }
 
 /// What a finished level tells of a cell above it.

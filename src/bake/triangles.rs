@@ -1,6 +1,7 @@
 //! A mesh as a surface: triangles in the cube's coordinates.
 
 use glam::{DVec3, Vec3};
+use rhogrid_core::asset::Rgb;
 
 use super::Cube;
 use super::overlap::triangle_touches;
@@ -12,6 +13,7 @@ struct Face {
     normals: [Vec3; 3],
     facing: Option<Vec3>,
     material: u8,
+    colours: [Rgb; 3],
 }
 
 /// The triangles of a mesh.
@@ -22,7 +24,9 @@ pub(super) struct MeshSurface {
 impl MeshSurface {
     /// Moves a mesh into the cube.
     pub fn new(mesh: &Mesh, cube: &Cube) -> Self {
-        let faces = mesh.triangles.iter().map(|triangle| {
+        let faces = mesh.triangles.iter().zip(0..).map(|(triangle, index)| {
+            let own: Option<&[Rgb; 3]> = mesh.colours.get(index);
+            let material = &mesh.materials[usize::from(triangle.material)];
             let corners = triangle
                 .positions
                 .map(|index| (mesh.positions[index as usize] - cube.centre) / cube.half_side);
@@ -33,6 +37,7 @@ impl MeshSurface {
                 normals,
                 facing: normal.try_normalize().map(|normal| normal.as_vec3()),
                 material: triangle.material,
+                colours: own.copied().unwrap_or([material.diffuse; 3]),
             }
         });
         Self {
@@ -76,12 +81,20 @@ impl Surface for MeshSurface {
             distance_squared: (nearest - point).length_squared(),
             normal,
             material: face.material,
+            colour: mixed(&face.colours, weights),
         }
     }
 
     fn facing(&self, primitive: u32) -> Option<Vec3> {
         self.face(primitive).facing
     }
+}
+
+/// Corners' colours by their weights.
+fn mixed(colours: &[Rgb; 3], weights: [f64; 3]) -> Rgb {
+    let [a, b, c] = colours.map(|colour| DVec3::from_array(colour.map(f64::from)));
+    let mixed = a * weights[0] + b * weights[1] + c * weights[2];
+    mixed.round().to_array().map(|channel| channel as u8)
 }
 
 /// Triangles lower than this, relative to their longest edge, count as their

@@ -3,11 +3,11 @@
 
 use rhogrid_core::asset::node::{halves, occupied};
 use rhogrid_core::asset::{
-    HEADER_BYTES, HEADER_CRC_OFFSET, KIND_GRID, MAGIC, SECTION_BYTES, SECTION_LEVEL,
+    HEADER_BYTES, HEADER_CRC_OFFSET, KIND_GRID, MAGIC, Rgb, SECTION_BYTES, SECTION_LEVEL,
     SECTION_MATERIALS, Shell, VERSION, checksum,
 };
 
-use super::{BakedGrid, BakedLevel, Cube, Masks, dictionary};
+use super::{Attributes, BakedGrid, BakedLevel, Cube, Masks, dictionary};
 use crate::error::{Error, Place};
 use crate::geometry::Up;
 
@@ -114,7 +114,7 @@ fn header(grid: &BakedGrid, header_bytes: usize, sections: usize) -> Vec<u8> {
         Shell::Thin => 1,
     };
     let depth = grid.levels.len() as u8 - 1;
-    bytes.extend([KIND_GRID, grid.rho, depth, 16]);
+    bytes.extend([KIND_GRID, grid.rho, depth, attribute_bits(grid.attributes)]);
     bytes.extend([shell, up, u8::from(grid.two_sided), sections as u8]);
     let radius = (grid.cube.radius / grid.cube.half_side * f64::from(1 << 28)).ceil();
     bytes.extend((radius as u32).to_le_bytes());
@@ -130,6 +130,14 @@ fn header(grid: &BakedGrid, header_bytes: usize, sections: usize) -> Vec<u8> {
     }
     bytes.resize(HEADER_BYTES, 0);
     bytes
+}
+
+fn attribute_bits(attributes: Attributes) -> u8 {
+    match attributes {
+        Attributes::Bits16 => 16,
+        Attributes::Bits32 => 32,
+        Attributes::Bits48 => 48,
+    }
 }
 
 /// In 1023rds of the half side, rounded up: x, y and z from bits 0, 10 and 20
@@ -151,6 +159,7 @@ fn materials(grid: &BakedGrid) -> Vec<u8> {
 /// A level with its links.
 pub(super) struct Linked<'a> {
     pub level: &'a BakedLevel,
+    pub attributes: Attributes,
     /// The first grandchild of each cell two levels above.
     pub links: Vec<u32>,
 }
@@ -177,7 +186,11 @@ fn linked(grid: &BakedGrid) -> Vec<Linked<'_>> {
             cells += own[first..end].iter().sum::<u32>();
             first = end;
         }
-        linked.push(Linked { level, links });
+        linked.push(Linked {
+            level,
+            attributes: grid.attributes,
+            links,
+        });
         above = own;
     }
     linked
@@ -185,14 +198,37 @@ fn linked(grid: &BakedGrid) -> Vec<Linked<'_>> {
 
 /// A level as it is.
 pub(super) fn plain(linked: &Linked<'_>) -> (u32, Vec<u8>) {
-    let Linked { level, links } = linked;
+    let Linked { level, links, .. } = linked;
     let mut bytes = Vec::new();
     extend_words(&mut bytes, &[level.attributes.len() as u32]);
     extend_words(&mut bytes, links);
     extend_padded(&mut bytes, &level.nodes);
     extend_padded(&mut bytes, &level.drawn);
     extend_padded(&mut bytes, &level.attributes);
+    extend_colours(&mut bytes, linked);
     (SECTION_LEVEL, bytes)
+}
+
+/// The colours that a level's attributes are wide enough for.
+pub(super) fn extend_colours(bytes: &mut Vec<u8>, linked: &Linked<'_>) {
+    let colours = linked.level.colours.iter();
+    match linked.attributes {
+        Attributes::Bits16 => {}
+        Attributes::Bits32 => {
+            let narrow: Vec<u16> = colours.map(|&colour| rgb565(colour)).collect();
+            extend_padded(bytes, &narrow);
+        }
+        Attributes::Bits48 => {
+            bytes.extend(colours.flat_map(|&[red, green, blue]| [red, green, blue, 0]));
+        }
+    }
+}
+
+/// The nearest 5:6:5 colour.
+fn rgb565(colour: Rgb) -> u16 {
+    let [red, green, blue] = colour.map(u32::from);
+    let nearest = |channel: u32, full: u32| (channel * full + 127) / 255;
+    (nearest(red, 31) << 11 | nearest(green, 63) << 5 | nearest(blue, 31)) as u16
 }
 
 pub(super) fn extend_words(bytes: &mut Vec<u8>, words: &[u32]) {

@@ -69,7 +69,7 @@ pub struct ByteCounts {
     pub dictionary: usize,
     /// Records that no code stands for.
     pub escapes: usize,
-    /// Attributes of all samples.
+    /// Attributes of all samples, with their colours.
     pub attributes: usize,
     /// Header, section table, materials, counts, padding, small tables of
     /// coded levels.
@@ -91,7 +91,8 @@ impl ByteCounts {
             .sum();
         let dictionary = grid.dictionary().map_or(0, |masks| 4 * masks.len());
         let escapes = 4 * escapes(grid);
-        let attributes = levels().map(|level| words(level.attributes)).sum();
+        let bytes = usize::from(grid.attribute_bits() / 8);
+        let attributes = levels().map(|level| bytes * level.cells()).sum();
         Self {
             links,
             masks,
@@ -193,7 +194,7 @@ impl Description {
             centre: cube.centre.to_array(),
             half_side: cube.half_side,
             radius: cube.radius,
-            attribute_bits: 16,
+            attribute_bits: grid.attribute_bits(),
             bytes_total: asset.bytes().len(),
             bytes: ByteCounts::of(&grid, asset.bytes().len()),
             bits_per_leaf_sample: asset.bytes().len() as f64 * 8.0 / leaves as f64,
@@ -278,6 +279,10 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
         bytes.escapes,
         bytes.attributes,
         bytes.rest
+    ))?;
+    super::say(format_args!(
+        "samples    {} bits each",
+        description.attribute_bits
     ))?;
     super::say(format_args!("masks      {}", description.masks_in_words()))?;
     if let Some(alpha) = description.alpha {

@@ -188,6 +188,7 @@ pub(super) fn cloud(
     });
     Ok(Cloud {
         points: points.collect(),
+        colours: Vec::new(),
         two_sided: ambiguity.is_some(),
     })
 }

@@ -6,7 +6,8 @@
 //! corners for a triangle, and stops at a `\`) sees only what it reads right.
 //! tobj parses numbers, resolves materials and splits the file into models;
 //! faces come back uncut, in file order, and are joined to one mesh. Groups,
-//! smoothing groups, texture coordinates and vertex colours are not used. A file
+//! smoothing groups and texture coordinates are not used; vertices have colours
+//! where the first one has. A file
 //! of vertices alone is a cloud.
 
 mod lines;
@@ -17,13 +18,14 @@ use std::collections::HashSet;
 use std::path::Path;
 
 use glam::DVec3;
+use rhogrid_core::asset::Rgb;
 
 use self::scan::{FaceLine, Scan};
 use super::normals::NO_NORMAL;
 use super::surface::{Corner, Face, Polygons, count, mesh};
 use super::{Imported, estimate, shown};
 use crate::error::{Error, Place};
-use crate::geometry::{Geometry, Material};
+use crate::geometry::{Cloud, Geometry, Material};
 
 /// Kinds of unused statements that get a note of their own.
 const MAX_UNUSED: usize = 8;
@@ -81,20 +83,28 @@ fn points(file: &Path, scan: &Scan) -> Result<Imported, Error> {
             count(normals, "normal")
         )),
     }
-    let positions: Vec<DVec3> = scan.points.lines().filter_map(position).collect();
-    let cloud = estimate::cloud(file, &positions, &mut notes)?;
+    let vertices: Vec<(DVec3, Option<DVec3>)> = scan.points.lines().filter_map(vertex).collect();
+    let positions: Vec<DVec3> = vertices.iter().map(|vertex| vertex.0).collect();
+    let colours: Option<Vec<DVec3>> = vertices.iter().map(|vertex| vertex.1).collect();
+    let cloud = Cloud {
+        colours: whole_colours(&colours.unwrap_or_default()),
+        ..estimate::cloud(file, &positions, &mut notes)?
+    };
     Ok(Imported {
         geometry: Geometry::Cloud(cloud),
         notes,
     })
 }
 
-/// The position in a checked `v` statement.
-fn position(line: &str) -> Option<DVec3> {
+/// The position in a checked `v` statement, and its colour.
+fn vertex(line: &str) -> Option<(DVec3, Option<DVec3>)> {
     let numbers = lines::words(line.strip_prefix("v ")?).map(|word| lines::number(word).ok());
     match numbers.collect::<Option<Vec<f64>>>()?[..] {
-        [x, y, z] => Some(DVec3::new(x, y, z)),
-        [x, y, z, weight] => Some(DVec3::new(x, y, z) / weight),
+        [x, y, z] => Some((DVec3::new(x, y, z), None)),
+        [x, y, z, weight] => Some((DVec3::new(x, y, z) / weight, None)),
+        [x, y, z, red, green, blue] => {
+            Some((DVec3::new(x, y, z), Some(DVec3::new(red, green, blue))))
+        }
         _ => None,
     }
 }
@@ -122,6 +132,13 @@ fn note_unused(scan: &Scan, materials: &[tobj::Material], notes: &mut Vec<String
                 "line {line}: a face names {name}, but the file has none"
             ));
         }
+    }
+    if (1..scan.vertices).contains(&scan.coloured) {
+        let without = scan.vertices - scan.coloured;
+        notes.push(format!(
+            "vertex colours not used: {} without",
+            count(without, "vertex")
+        ));
     }
     for (keyword, (number, line)) in scan.unused.iter().take(MAX_UNUSED) {
         let number = count(*number, "statement");
@@ -153,7 +170,9 @@ fn join(
         ..Polygons::default()
     };
     let mut lines = lines.iter();
+    let mut colours = Vec::new();
     for tobj::Model { mesh, .. } in models {
+        colours.extend(mesh.vertex_color.chunks_exact(3).map(DVec3::from_slice));
         let first_position = u32::try_from(polygons.positions.len()).ok()?;
         let first_normal = u32::try_from(polygons.normals.len()).ok()?;
         polygons
@@ -188,6 +207,7 @@ fn join(
                 polygons.corners.push(Corner {
                     position: first_position + mesh.indices.get(i)?,
                     normal,
+                    colour: first_position + mesh.indices.get(i)?,
                 });
             }
             polygons.faces.push(Face {
@@ -197,7 +217,27 @@ fn join(
             });
         }
     }
-    lines.next().is_none().then_some(polygons)
+    polygons.colours = whole_colours(&colours);
+    let is_whole = [0, polygons.positions.len()].contains(&polygons.colours.len());
+    (is_whole && lines.next().is_none()).then_some(polygons)
+}
+
+/// Colours in 255ths: of ones if none exceeds one, as most tools write them,
+/// else as they are.
+fn whole_colours(colours: &[DVec3]) -> Vec<Rgb> {
+    let largest = colours.iter().map(|colour| colour.max_element());
+    let scale = if largest.fold(0.0, f64::max) > 1.0 {
+        1.0
+    } else {
+        255.0
+    };
+    let whole = colours.iter().map(|colour| {
+        let channels = (*colour * scale)
+            .round()
+            .clamp(DVec3::ZERO, DVec3::splat(255.0));
+        channels.to_array().map(|channel| channel as u8)
+    });
+    whole.collect()
 }
 
 fn material(material: &tobj::Material) -> Material {

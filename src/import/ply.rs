@@ -3,8 +3,9 @@
 //! Based on: G. Turk, The PLY Polygon File Format, 1994. Any scalar and list
 //! types, any order of elements; what is unknown is skipped. Polygons come
 //! from the element `face`, triangle strips from `tristrips` (-1 separates).
-//! A file with neither is a cloud; without normals they are estimated. Vertex
-//! colours are read over: geometry does not carry them.
+//! A file with neither is a cloud; without normals they are estimated. Vertices
+//! have colours where they have `red`, `green` and `blue`: of floats one is full,
+//! of integers the type's largest value.
 
 mod body;
 mod header;
@@ -46,12 +47,15 @@ pub(super) fn read(file: &Path, bytes: &[u8]) -> Result<Imported, Error> {
         zero_normal,
         ..
     } = reader;
-    note_unused(&header, &body, &mut notes);
+    note_unused(&body, &mut notes);
     let geometry = if polygons.faces.is_empty() {
         Geometry::Cloud(if has_normals {
-            cloud(file, &polygons, zero_normal)?
+            cloud(file, polygons, zero_normal)?
         } else {
-            estimate::cloud(file, &polygons.positions, &mut notes)?
+            Cloud {
+                colours: polygons.colours,
+                ..estimate::cloud(file, &polygons.positions, &mut notes)?
+            }
         })
     } else {
         Geometry::Mesh(mesh(file, polygons, &mut notes)?)
@@ -59,13 +63,7 @@ pub(super) fn read(file: &Path, bytes: &[u8]) -> Result<Imported, Error> {
     Ok(Imported { geometry, notes })
 }
 
-fn note_unused(header: &Header, body: &Body, notes: &mut Vec<String>) {
-    if header
-        .element("vertex")
-        .is_some_and(|vertex| vertex.find(&["red"]).is_some())
-    {
-        notes.push("vertex colours not used".to_owned());
-    }
+fn note_unused(body: &Body, notes: &mut Vec<String>) {
     if let Some(line) = body.surplus_line {
         notes.push(format!(
             "line {line} holds more values than the header declares"
@@ -164,15 +162,24 @@ impl<'a> Reader<'a> {
 
     fn vertices(&mut self, element: &'a Element, body: &mut Body<'a>) -> Result<(), Error> {
         let axes = ["x", "y", "z", "nx", "ny", "nz"].map(|name| scalar(element, name));
+        let channels = ["red", "green", "blue"].map(|name| scalar(element, name));
+        let has_colours = channels.iter().all(Option::is_some);
         let used = if self.has_normals { 6 } else { 3 };
         let mut values = [0.0; 6];
+        let mut colour = [0; 3];
+        let place_of =
+            |names: &[Option<usize>], place| names.iter().position(|at| *at == Some(place));
         let last = element.properties.len() - 1;
         each_entry(element, body, |body, place, kind| {
             match (
-                axes[..used].iter().position(|axis| *axis == Some(place)),
+                place_of(&axes[..used], place),
+                place_of(&channels, place),
                 kind,
             ) {
-                (Some(axis), Kind::Scalar(scalar)) => values[axis] = coordinate(body, scalar)?,
+                (Some(axis), _, Kind::Scalar(scalar)) => values[axis] = coordinate(body, scalar)?,
+                (_, Some(channel), Kind::Scalar(scalar)) if has_colours => {
+                    colour[channel] = channel_of(body, scalar)?;
+                }
                 _ => body.skip(kind)?,
             }
             if place == last {
@@ -184,6 +191,9 @@ impl<'a> Reader<'a> {
                         self.zero_normal.get_or_insert((index, body.place()));
                     }
                     self.polygons.normals.push(normal);
+                }
+                if has_colours {
+                    self.polygons.colours.push(colour);
                 }
                 self.polygons.positions.push(DVec3::new(x, y, z));
             }
@@ -292,6 +302,25 @@ fn scalar(element: &Element, name: &str) -> Option<usize> {
         .filter(|&i| matches!(element.properties[i].kind, Kind::Scalar(_)))
 }
 
+/// A channel of a colour in 255ths of what is full.
+fn channel_of(body: &mut Body, scalar: Scalar) -> Result<u8, Error> {
+    let value = body.value(scalar)?;
+    let full = match scalar {
+        Scalar::F32 | Scalar::F64 => 1.0,
+        Scalar::I8 => f64::from(i8::MAX),
+        Scalar::U8 => f64::from(u8::MAX),
+        Scalar::I16 => f64::from(i16::MAX),
+        Scalar::U16 => f64::from(u16::MAX),
+        Scalar::I32 => f64::from(i32::MAX),
+        Scalar::U32 => f64::from(u32::MAX),
+    };
+    if value.is_finite() {
+        return Ok((value / full * 255.0).round().clamp(0.0, 255.0) as u8);
+    }
+    let what = format!("the colour {value} is not a finite number");
+    Err(body.error(what, "remove the colours, or export the model again"))
+}
+
 /// A finite number in the range of `f32`.
 fn coordinate(body: &mut Body, scalar: Scalar) -> Result<f64, Error> {
     let value = body.value(scalar)?;
@@ -308,7 +337,7 @@ fn coordinate(body: &mut Body, scalar: Scalar) -> Result<f64, Error> {
 
 fn cloud(
     file: &Path,
-    vertices: &Polygons,
+    vertices: Polygons,
     zero_normal: Option<(usize, Place)>,
 ) -> Result<Cloud, Error> {
     if let Some((index, place)) = zero_normal {
@@ -335,6 +364,7 @@ fn cloud(
         .collect();
     Ok(Cloud {
         points,
+        colours: vertices.colours,
         two_sided: false,
     })
 }

@@ -4,6 +4,7 @@ use std::collections::HashMap;
 use std::path::Path;
 
 use glam::DVec3;
+use rhogrid_core::asset::Rgb;
 
 use super::normals::{self, NO_NORMAL};
 use super::{materials, polygon};
@@ -17,6 +18,8 @@ pub(super) struct Corner {
     pub position: u32,
     /// Index into [`Polygons::normals`], or [`NO_NORMAL`].
     pub normal: u32,
+    /// Index into [`Polygons::colours`], if there are any.
+    pub colour: u32,
 }
 
 /// A face: the corners from the end of the face before it to its own.
@@ -37,6 +40,8 @@ pub(super) struct Polygons {
     pub positions: Vec<DVec3>,
     /// Of any length; zero means none.
     pub normals: Vec<DVec3>,
+    /// Of all vertices, or none.
+    pub colours: Vec<Rgb>,
     pub corners: Vec<Corner>,
     pub faces: Vec<Face>,
     pub materials: Vec<Material>,
@@ -46,6 +51,8 @@ pub(super) struct Polygons {
 #[derive(Default)]
 struct Cut {
     triangles: Vec<Triangle>,
+    /// Of the triangles' corners, if there are any.
+    colours: Vec<[Rgb; 3]>,
     materials: Vec<u32>,
     without_area: Vec<Place>,
 }
@@ -63,6 +70,7 @@ pub(super) fn mesh(
     weld(&mut polygons, notes);
     let Cut {
         mut triangles,
+        colours,
         materials,
         without_area,
     } = cut(file, &polygons)?;
@@ -128,6 +136,7 @@ pub(super) fn mesh(
         normals,
         triangles,
         materials,
+        colours,
         two_sided: false,
     })
 }
@@ -196,7 +205,7 @@ fn cut(file: &Path, polygons: &Polygons) -> Result<Cut, Error> {
         let corners = &polygons.corners[start..face.end];
         start = face.end;
         if corners.len() == 3 {
-            cut.push(corners, [0, 1, 2], face.material);
+            cut.push(polygons, corners, [0, 1, 2], face.material);
             continue;
         }
         ring.clear();
@@ -221,14 +230,18 @@ fn cut(file: &Path, polygons: &Polygons) -> Result<Cut, Error> {
             cut.without_area.push(face.place);
         }
         for triangle in triangles {
-            cut.push(corners, triangle, face.material);
+            cut.push(polygons, corners, triangle, face.material);
         }
     }
     Ok(cut)
 }
 
 impl Cut {
-    fn push(&mut self, corners: &[Corner], at: [usize; 3], material: u32) {
+    fn push(&mut self, polygons: &Polygons, corners: &[Corner], at: [usize; 3], material: u32) {
+        if !polygons.colours.is_empty() {
+            let colour = |i: usize| polygons.colours[corners[i].colour as usize];
+            self.colours.push(at.map(colour));
+        }
         self.triangles.push(Triangle {
             positions: at.map(|i| corners[i].position),
             normals: at.map(|i| corners[i].normal),
@@ -238,11 +251,12 @@ impl Cut {
     }
 }
 
-/// The corner of a position that has the file's normal of the same index, or
-/// none.
+/// The corner of a position that has the file's colour and normal of the same
+/// index, or no normal.
 pub(super) fn corner(position: u32, has_normal: bool) -> Corner {
     Corner {
         position,
         normal: if has_normal { position } else { NO_NORMAL },
+        colour: position,
     }
 }

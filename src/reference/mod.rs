@@ -171,10 +171,9 @@ impl Scene {
     }
 }
 
-/// Ambient and diffuse light on a material, 0 to 255 a channel.
-fn shade(diffuse: [u8; 3], light: &Light, lambert: f64) -> DVec3 {
-    let [red, green, blue] = diffuse.map(f64::from);
-    let colour = DVec3::new(red, green, blue) * (light.ambient + light.diffuse * lambert);
+/// Ambient and diffuse light on a colour, 0 to 255 a channel.
+fn shade(diffuse: DVec3, light: &Light, lambert: f64) -> DVec3 {
+    let colour = diffuse * (light.ambient + light.diffuse * lambert);
     colour.clamp(DVec3::ZERO, DVec3::splat(255.0))
 }
 

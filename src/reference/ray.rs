@@ -154,6 +154,8 @@ pub(super) struct Disc {
     /// Unit normal of the front.
     pub normal: Vec3,
     pub radius: f32,
+    /// Index of its point.
+    pub source: u32,
 }
 
 impl Disc {

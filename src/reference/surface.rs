@@ -2,6 +2,7 @@
 //! one. Geometry and its placing in, what there is to shade at a point out.
 
 use glam::{DVec3, Vec3};
+use rhogrid_core::asset::Rgb;
 
 use super::hierarchy::Hierarchy;
 use super::ray::{Disc, Facet, Ray, Sides};
@@ -23,14 +24,19 @@ pub(super) enum Surface {
         /// In the order of the mesh.
         coats: Vec<Coat>,
     },
-    Cloud(Hierarchy<Disc>),
+    Cloud {
+        discs: Hierarchy<Disc>,
+        /// In the order of the cloud; empty for white.
+        colours: Vec<Rgb>,
+    },
 }
 
 /// What a triangle looks like.
 pub(super) struct Coat {
     /// Unit normals at the corners.
     normals: [Vec3; 3],
-    diffuse: [u8; 3],
+    /// Colours at the corners.
+    colours: [DVec3; 3],
 }
 
 /// What there is to shade where a ray meets the surface, scene space.
@@ -39,8 +45,8 @@ pub(super) struct Spot {
     pub distance: f64,
     /// Unit shading normal; zero where it is undefined.
     pub normal: DVec3,
-    /// Of the material.
-    pub diffuse: [u8; 3],
+    /// Of the surface there, 0 to 255 a channel.
+    pub diffuse: DVec3,
     /// Where a shadow ray starts.
     pub shadow_start: DVec3,
 }
@@ -61,16 +67,21 @@ impl Surface {
                         Sides::Front => coat.normal(weights),
                         Sides::Both => coat.normal_on(seen_side, weights),
                     },
-                    diffuse: coat.diffuse,
+                    diffuse: coat.colour(weights),
                     shadow_start: facet.point(weights) + seen_side * FACET_SHADOW_GAP,
                 })
             }
-            Self::Cloud(discs) => {
-                let (distance, normal, radius) = blend(discs, ray, sides)?;
+            Self::Cloud { discs, colours } => {
+                let Blend {
+                    distance,
+                    normal,
+                    diffuse,
+                    radius,
+                } = blend(discs, colours, ray, sides)?;
                 Some(Spot {
                     distance,
                     normal,
-                    diffuse: Material::white().diffuse,
+                    diffuse,
                     shadow_start: ray.at(distance) + towards * radius * CLOUD_SHADOW_GAP,
                 })
             }
@@ -81,7 +92,7 @@ impl Surface {
     pub fn blocks(&self, ray: &Ray) -> bool {
         match self {
             Self::Mesh { facets, .. } => facets.blocks(ray),
-            Self::Cloud(discs) => discs.blocks(ray),
+            Self::Cloud { discs, .. } => discs.blocks(ray),
         }
     }
 
@@ -100,9 +111,14 @@ impl Surface {
         let coats = mesh
             .triangles
             .iter()
-            .map(|triangle| Coat {
-                normals: triangle.normals.map(|normal| mesh.normals[normal as usize]),
-                diffuse: mesh.materials[usize::from(triangle.material)].diffuse,
+            .zip(0..)
+            .map(|(triangle, index): (_, usize)| {
+                let material = mesh.materials[usize::from(triangle.material)].diffuse;
+                let own = mesh.colours.get(index).copied();
+                Coat {
+                    normals: triangle.normals.map(|normal| mesh.normals[normal as usize]),
+                    colours: own.unwrap_or([material; 3]).map(channels),
+                }
             })
             .collect();
         Self::Mesh {
@@ -122,17 +138,31 @@ impl Surface {
             .points
             .iter()
             .zip(centres.iter().zip(radii))
-            .map(|(point, (&centre, radius))| Disc {
+            .zip(0..)
+            .map(|((point, (&centre, radius)), source)| Disc {
                 centre,
                 normal: point.normal,
                 radius,
+                source,
             })
             .collect();
-        Self::Cloud(Hierarchy::new(&discs))
+        Self::Cloud {
+            discs: Hierarchy::new(&discs),
+            colours: cloud.colours.clone(),
+        }
     }
 }
 
+fn channels(colour: Rgb) -> DVec3 {
+    DVec3::from_array(colour.map(f64::from))
+}
+
 impl Coat {
+    fn colour(&self, weights: DVec3) -> DVec3 {
+        let [a, b, c] = self.colours;
+        a * weights.x + b * weights.y + c * weights.z
+    }
+
     /// The interpolated unit normal; zero where the corners' normals cancel out.
     fn normal(&self, weights: DVec3) -> DVec3 {
         let [a, b, c] = self.normals.map(Vec3::as_dvec3);
@@ -152,23 +182,47 @@ impl Coat {
     }
 }
 
-/// The surface that overlapping discs make: distance and unit normal are means
-/// over the discs that the ray meets less than one radius behind the first,
-/// weighted by nearness to their centres. With the first disc's radius.
-fn blend(discs: &Hierarchy<Disc>, ray: &Ray, sides: Sides) -> Option<(f64, DVec3, f64)> {
+/// What overlapping discs make.
+struct Blend {
+    distance: f64,
+    normal: DVec3,
+    diffuse: DVec3,
+    /// The first disc's.
+    radius: f64,
+}
+
+/// The surface that overlapping discs make: distance, unit normal and colour are
+/// means over the discs that the ray meets less than one radius behind the
+/// first, weighted by nearness to their centres.
+fn blend(discs: &Hierarchy<Disc>, colours: &[Rgb], ray: &Ray, sides: Sides) -> Option<Blend> {
+    let white = Material::white().diffuse;
+    let colour = |disc: &Disc| channels(*colours.get(disc.source as usize).unwrap_or(&white));
     let (first, first_hit) = discs.nearest(ray, sides)?;
     let radius = f64::from(first.radius);
     let reach = first_hit.distance + radius / ray.direction.length();
-    let (mut distance, mut normal, mut total) = (0.0, DVec3::ZERO, 0.0);
+    let (mut distance, mut total) = (0.0, 0.0);
+    let (mut normal, mut diffuse) = (DVec3::ZERO, DVec3::ZERO);
     for (disc, hit) in discs.within(ray, sides, reach) {
         let weight = disc.weight(ray.at(hit.distance));
         distance += weight * hit.distance;
         normal += weight * disc.seen_normal(hit);
+        diffuse += weight * colour(disc);
         total += weight;
     }
     Some(if total > 0.0 {
-        (distance / total, normal.normalize_or_zero(), radius)
+        Blend {
+            distance: distance / total,
+            normal: normal.normalize_or_zero(),
+            diffuse: diffuse / total,
+            radius,
+        }
     } else {
-        (first_hit.distance, first.seen_normal(first_hit), radius) // only rims
+        // Only rims.
+        Blend {
+            distance: first_hit.distance,
+            normal: first.seen_normal(first_hit),
+            diffuse: colour(first),
+            radius,
+        }
     })
 }

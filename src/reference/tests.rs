@@ -72,6 +72,7 @@ fn sphere(centre: DVec3, radius: f64, rings: u32) -> Mesh {
             .collect(),
         triangles: corners.into_iter().map(white).collect(),
         materials: vec![Material::white()],
+        colours: Vec::new(),
         two_sided: false,
     }
 }
@@ -97,6 +98,7 @@ fn square(centre: DVec3, half_side: f64) -> Mesh {
         normals: vec![Vec3::Z; 4],
         triangles: vec![white([0, 1, 2]), white([0, 2, 3])],
         materials: vec![Material::white()],
+        colours: Vec::new(),
         two_sided: false,
     }
 }
@@ -459,6 +461,7 @@ fn sphere_cloud(count: usize) -> Cloud {
     });
     Cloud {
         points: points.collect(),
+        colours: Vec::new(),
         two_sided: false,
     }
 }

@@ -310,6 +310,7 @@ fn square(table: &GroundTable) -> Mesh {
             name: "ground".into(),
             diffuse: table.colour,
         }],
+        colours: Vec::new(),
         two_sided: false,
     }
 }
@@ -388,14 +389,25 @@ impl Instance {
             material: material + triangle.material,
         });
         merged.triangles.extend(triangles);
+        let diffuse = |index: usize| match &self.materials {
+            None => mesh.materials[index].diffuse,
+            Some(given) => given.get(index).copied().unwrap_or([0; 3]),
+        };
+        let own = mesh.colours.iter().filter(|_| self.materials.is_none());
+        let own = own.map(Some).chain(std::iter::repeat(None));
+        let colours = mesh
+            .triangles
+            .iter()
+            .zip(own)
+            .map(|(triangle, own)| match own {
+                Some(&[a, b, c]) if self.place.mirrors() => [a, c, b],
+                Some(&colours) => colours,
+                None => [diffuse(usize::from(triangle.material)); 3],
+            });
+        merged.colours.extend(colours);
         for (index, own) in mesh.materials.iter().enumerate() {
-            let given = self.materials.as_ref();
-            let diffuse = match given {
-                None => own.diffuse,
-                Some(given) => given.get(index).copied().unwrap_or([0; 3]),
-            };
             merged.materials.push(Material {
-                diffuse,
+                diffuse: diffuse(index),
                 ..own.clone()
             });
         }

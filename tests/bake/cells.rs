@@ -1,7 +1,7 @@
 //! The cells of an asset with their places, read from its node records.
 
-use rhogrid_core::asset::Grid;
 use rhogrid_core::asset::node::Flags;
+use rhogrid_core::asset::{Grid, Rgb};
 
 /// A cell of some depth.
 #[derive(Clone, Debug)]
@@ -9,6 +9,7 @@ pub struct Cell {
     /// Column, row and slice, from 0.
     pub place: [u32; 3],
     pub attribute: u16,
+    pub colour: Option<Rgb>,
     /// Whether it is drawn where drawing stops at its depth.
     pub is_drawn: bool,
     /// The node record that subdivides it; none at the last depth.
@@ -62,11 +63,12 @@ pub fn cells(grid: &Grid<'_>) -> Vec<Vec<Cell>> {
             }
         }
         assert_eq!(places.len(), level.attributes.len());
-        let own = places.iter().zip(level.attributes).zip(are_drawn);
+        let own = places.iter().zip(level.attributes).zip(are_drawn).zip(0..);
         depths.push(
-            own.map(|((&place, &attribute), is_drawn)| Cell {
+            own.map(|(((&place, &attribute), is_drawn), index)| Cell {
                 place,
                 attribute,
+                colour: level.colours.get(index),
                 is_drawn,
                 record: Vec::new(),
                 children: 0..0,

@@ -205,6 +205,7 @@ fn clouds_fill_the_cells_of_their_points() {
     for (rho, level) in [(2u8, 4u8), (3, 2), (4, 1), (5, 1)] {
         let cloud = Geometry::Cloud(Cloud {
             points: points.clone(),
+            colours: Vec::new(),
             two_sided: false,
         });
         let grid = bake::grid(&cloud, &options(rho, level), &|_| {}).unwrap();

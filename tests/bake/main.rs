@@ -2,6 +2,7 @@
 //! through its file format.
 
 mod cells;
+mod colours;
 mod cones;
 mod counts;
 mod dictionary;
@@ -119,6 +120,7 @@ fn sphere_of_points() -> Cloud {
     });
     Cloud {
         points: points.collect(),
+        colours: Vec::new(),
         two_sided: false,
     }
 }

@@ -106,6 +106,66 @@ fn thin_is_the_default_and_counted_in_full() {
     );
 }
 
+/// Corners of a square, each with a colour.
+const COLOURED: &str = "v -1 -1 0 1 0 0\nv 1 -1 0 0 1 0\nv 1 1 0 0 0 1\nv -1 1 0 1 1 1\n";
+
+#[test]
+fn colours_make_attributes_wider() {
+    let folder = Folder::new();
+    folder.write("square.obj", format!("{COLOURED}f 1 2 3 4\n"));
+    let mut sizes = Vec::new();
+    for (options, bits) in [
+        ("--attributes 16", 16),
+        ("", 32),
+        ("--attributes 32", 32),
+        ("--attributes 48", 48),
+    ] {
+        let info = folder.json(&format!("bake square.obj -o a.rho --level 2 {options}"));
+        assert_eq!(info["attribute_bits"], bits, "{options}");
+        assert_eq!(info, folder.json("info a.rho"));
+        let cells: Vec<u64> = serde_json::from_value(info["cells_per_depth"].clone()).unwrap();
+        let attributes = cells.iter().sum::<u64>() * bits / 8;
+        assert_eq!(info["bytes"]["attributes"], attributes);
+        sizes.push(info["bytes_total"].as_u64().unwrap());
+    }
+    assert!(sizes[0] < sizes[1] && sizes[1] == sizes[2] && sizes[2] < sizes[3]);
+    let late = folder.run("render a.rho -o a.png --attributes 16");
+    assert_eq!(late.code, 2);
+    assert!(
+        late.stderr.contains("--attributes is for baking"),
+        "{}",
+        late.stderr
+    );
+}
+
+#[test]
+fn coloured_pictures_are_those_of_the_reference() {
+    let folder = Folder::new();
+    folder.write("square.obj", format!("{COLOURED}f 1 2 3 4\n"));
+    folder.write(
+        "scene.toml",
+        "[[instance]]\nmodel = \"square.obj\"\n[[instance]]\nmodel = \"square.obj\"\n\
+        position = [0.5, 0.0, 1.0]\nscale = 0.5\nmaterials = [[250, 60, 60]]\n",
+    );
+    let view = "--size 120x120 --pitch 5 --yaw 10 --light 0,0,1 --frames 1 --compare";
+    for line in [
+        format!("render square.obj -o a.png {view}"),
+        format!("render square.obj -o a.png --attributes 48 {view}"),
+        format!(
+            "render scene.toml -o a.png {}",
+            view.replace("--light 0,0,1 ", "")
+        ),
+    ] {
+        let report = folder.json(&line);
+        let psnr = report["psnr_inside"].as_f64().unwrap();
+        assert!(psnr > 27.0, "{line}: {psnr} dB");
+    }
+    let grey = folder.json(&format!(
+        "render square.obj -o a.png --attributes 16 {view}"
+    ));
+    assert!(grey["psnr_inside"].as_f64().unwrap() < 15.0);
+}
+
 #[test]
 fn a_dictionary_of_masks_saves_bytes_and_is_told() {
     let folder = Folder::new();

@@ -1,7 +1,7 @@
 //! What the golden frames show.
 
 use glam::DVec3;
-use rhogrid::geometry::Geometry;
+use rhogrid::geometry::{Geometry, Mesh};
 use rhogrid::import::procedural::{demo, shapes};
 use rhogrid_core::asset::Grid;
 use rhogrid_core::camera::{Camera, Orbit};
@@ -16,6 +16,8 @@ pub enum Model {
     Sphere,
     Cube,
     Torus,
+    /// A torus whose colour is its place.
+    Painted,
     Quad,
 }
 
@@ -26,8 +28,23 @@ impl Model {
             Self::Sphere => shapes::sphere(24),
             Self::Cube => shapes::cube(),
             Self::Torus => shapes::torus(48, 24),
+            Self::Painted => painted(shapes::torus(48, 24)),
             Self::Quad => shapes::quad(),
         })
+    }
+}
+
+/// With a colour for each corner, 0 to 255 from -1 to 1.
+fn painted(mesh: Mesh) -> Mesh {
+    let colour = |position: u32| {
+        let place = mesh.positions[position as usize];
+        let channels = ((place + 1.0) * 127.5).round();
+        channels.to_array().map(|channel| channel as u8)
+    };
+    let corners = mesh.triangles.iter().map(|t| t.positions.map(colour));
+    Mesh {
+        colours: corners.collect(),
+        ..mesh.clone()
     }
 }
 
@@ -154,7 +171,7 @@ const BAND: Rect = Rect {
     bottom: 61,
 };
 
-use Model::{Cube, Demo, Quad, Sphere, Torus};
+use Model::{Cube, Demo, Painted, Quad, Sphere, Torus};
 
 /// Inside a two-sided sphere, 0.4 radii from its centre.
 pub const INSIDE: Case = two_sided(case(
@@ -259,6 +276,17 @@ pub const CASES: &[Case] = &[
     Case {
         band: Some(BAND),
         ..case("torus-band", Torus, 3, 3, view(30, FULL, SMALL))
+    },
+    case("painted-rho-3", Painted, 3, 4, view(30, FULL, STANDARD)),
+    Case {
+        shadows: Method::OnePass,
+        ..case(
+            "painted-shadows-rho-4",
+            Painted,
+            4,
+            3,
+            view(120, FULL, SMALL),
+        )
     },
     Case {
         shadows: Method::TwoPass,

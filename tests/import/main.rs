@@ -1,6 +1,7 @@
 //! Import of files of every odd kind: right geometry or an error with its
 //! place, and never a panic.
 
+mod colours;
 mod dispatch;
 mod mtl;
 mod mutation;

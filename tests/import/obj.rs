@@ -251,6 +251,7 @@ fn vertices_alone_are_a_cloud() {
     assert_eq!(
         imported.notes,
         [
+            "vertex colours not used: 3 vertices without",
             "1 statement `p` not used, the first on line 6",
             "1 normal not used: OBJ does not pair them with points; PLY does (nx ny nz)",
             "no normals: estimated, but 100% of the points are on open sheets: \

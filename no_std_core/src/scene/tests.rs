@@ -30,7 +30,10 @@ fn frame(scene: &Scene<'_>, camera: &Camera, quality: &Quality, band: Rect, rows
     // What was there before must not show.
     let mut colour = std::vec![0xdead; band.pixels()];
     let mut depth = std::vec![0xbeef; band.pixels()];
-    let mut canvas = std::vec![0xdead_beef; canvas_len(rows)];
+    // Two words a pixel where samples have colours.
+    let is_coloured = |instance: &Instance<'_>| instance.grid.attribute_bits() > 16;
+    let words = 1 + usize::from(scene.instances.iter().any(is_coloured));
+    let mut canvas = std::vec![0xdead_beef; words * canvas_len(rows)];
     let mut shades = std::vec![0xdead; shades_len(8)];
     let mut shadows = std::vec![0xbeef; scene.shadows.map_len() * MAX_LAMPS];
     let target = Target::band(band, &mut colour, &mut canvas)
@@ -52,6 +55,7 @@ fn model(rng: &mut Rng) -> Model {
     let (rho, depth) = (rng.u8(2..=4), rng.u8(0..=3));
     let mut model = Model::random(rng, rho, depth, 400.0);
     model.paint(rng);
+    model.attribute_bits = *rng.choice(&[16, 16, 32, 48]).expect("some");
     model
 }
 
@@ -128,7 +132,7 @@ fn a_grid_alone_is_drawn_as_ever() {
         };
         let placed = frame(&scene, &camera, &quality, whole(&camera), camera.height);
         let (mut colour, mut depth) = (placed.colour.clone(), placed.depth.clone());
-        let mut canvas = std::vec![0; canvas_len(camera.height)];
+        let mut canvas = std::vec![0; 2 * canvas_len(camera.height)];
         let mut shades = std::vec![0; shades_len(8)];
         let mut target = Target::band(whole(&camera), &mut colour, &mut canvas)
             .and_then(|target| target.with_depth(&mut depth))

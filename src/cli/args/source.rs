@@ -6,7 +6,7 @@ use clap::{Args, ValueEnum};
 use rhogrid_core::asset::{Shell, max_depth};
 
 use super::super::Failure;
-use crate::bake::{GridOptions, Masks, Normals};
+use crate::bake::{Attributes, GridOptions, Masks, Normals};
 use crate::geometry::Up;
 
 /// What a mesh or cloud is baked into.
@@ -34,7 +34,7 @@ impl From<ShellChoice> for Shell {
     }
 }
 
-/// Which normals intermediate samples have.
+/// Which normals and colours intermediate samples have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum NormalChoice {
     /// The mean of what a cell holds, where that tells something
@@ -76,6 +76,22 @@ pub enum AttributeChoice {
     /// 13-bit normal and 3-bit material
     #[value(name = "16")]
     Bits16,
+    /// With a 16-bit colour
+    #[value(name = "32")]
+    Bits32,
+    /// With a 24-bit colour
+    #[value(name = "48")]
+    Bits48,
+}
+
+impl From<AttributeChoice> for Attributes {
+    fn from(choice: AttributeChoice) -> Self {
+        match choice {
+            AttributeChoice::Bits16 => Self::Bits16,
+            AttributeChoice::Bits32 => Self::Bits32,
+            AttributeChoice::Bits48 => Self::Bits48,
+        }
+    }
 }
 
 /// How a source becomes an asset.
@@ -93,7 +109,7 @@ pub struct SourceArgs {
     /// Which cells to keep [default: thin]
     #[arg(long, value_enum)]
     pub shell: Option<ShellChoice>,
-    /// Normals of intermediate samples [default: filtered]
+    /// Normals and colours of intermediate samples [default: filtered]
     #[arg(long, value_enum)]
     pub normals: Option<NormalChoice>,
     /// How masks are written [default: plain]
@@ -102,9 +118,10 @@ pub struct SourceArgs {
     /// Which source axis points up [default: y]
     #[arg(long, value_enum)]
     pub up: Option<Up>,
-    /// Bits of a sample's attribute
-    #[arg(long, value_enum, value_name = "BITS", default_value = "16")]
-    pub attributes: AttributeChoice,
+    /// Bits of a sample's attribute [default: 16, or 32 for a source with
+    /// colours]
+    #[arg(long, value_enum, value_name = "BITS")]
+    pub attributes: Option<AttributeChoice>,
     /// Draw every surface from both sides
     #[arg(long)]
     pub two_sided: bool,
@@ -145,6 +162,7 @@ impl SourceArgs {
             ("--normals", self.normals.is_some()),
             ("--masks", self.masks.is_some()),
             ("--up", self.up.is_some()),
+            ("--attributes", self.attributes.is_some()),
             ("--two-sided", self.two_sided),
         ];
         match given.iter().find(|(_, is_given)| *is_given) {
@@ -167,6 +185,7 @@ impl SourceArgs {
             two_sided: self.two_sided,
             up: self.up.unwrap_or(defaults.up),
             masks: self.masks.map_or(defaults.masks, Masks::from),
+            attributes: self.attributes.map(Attributes::from),
         }
     }
 }

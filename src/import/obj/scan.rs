@@ -35,6 +35,8 @@ pub(super) struct Scan {
     /// Statements without a use here: how many, and the first one's line.
     pub unused: BTreeMap<String, (usize, usize)>,
     pub vertices: usize,
+    /// How many of them have a colour; it is kept where all have one.
+    pub coloured: usize,
     /// The first line with texture coordinate and normal indices into an
     /// empty list; exporters that leave lists out exist.
     pub dangling: [Option<usize>; 2],
@@ -47,6 +49,9 @@ const NUMBERS: &str = "write plain finite numbers";
 const INDICES: &str = "indices count from 1, or back from the last one with -1";
 const CORNERS: &str = "write every corner of a face as v, v/vt, v//vn or v/vt/vn";
 
+/// Least numbers of a vertex with a colour.
+const COLOURED: usize = 6;
+
 /// How many `v`, `vt` and `vn` statements there are.
 type Counts = [usize; 3];
 
@@ -57,14 +62,21 @@ const KINDS: [&str; 3] = ["vertex", "texture coordinate", "normal"];
 pub(super) fn scan(file: &Path, text: &str) -> Result<Scan, Error> {
     // Faces may name vertices that follow them, so all are counted first.
     let mut total: Counts = [0; 3];
+    let mut coloured = 0;
     let counted: Result<(), Error> = each_statement(text, |statement| {
         if let Some(kind) = kind(statement.keyword) {
             total[kind] += 1;
         }
+        let has_colour = statement.keyword == "v" && words(statement.rest).count() >= COLOURED;
+        coloured += usize::from(has_colour);
         Ok(())
     });
     counted?;
-    let mut scan = Scan::default();
+    let mut scan = Scan {
+        vertices: total[0],
+        coloured,
+        ..Scan::default()
+    };
     let mut read: Counts = [0; 3];
     each_statement(text, |statement| {
         let line = statement.line;
@@ -74,7 +86,6 @@ pub(super) fn scan(file: &Path, text: &str) -> Result<Scan, Error> {
         }
         done.map_err(|(what, remedy)| Error::at(file, Place::Line(line), what, remedy))
     })?;
-    scan.vertices = total[0];
     Ok(scan)
 }
 
@@ -117,7 +128,9 @@ impl Scan {
         let words: Vec<&str> = words(rest).collect();
         let numbers = numbers(&words)?;
         let used = match numbers[..] {
-            [_, _, _] | [_, _, _, _, _, _] | [_, _, _, _, _, _, _] => 3,
+            [_, _, _] => 3,
+            [_, _, _, _, _, _] | [_, _, _, _, _, _, _] if self.coloured < self.vertices => 3,
+            [_, _, _, _, _, _] | [_, _, _, _, _, _, _] => COLOURED,
             [x, y, z, w] => {
                 if ![x, y, z]
                     .iter()

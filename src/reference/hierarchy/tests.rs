@@ -94,6 +94,7 @@ fn hierarchy_agrees_with_all_discs() {
                 centre: random.vector().as_vec3(),
                 normal: random.vector().normalize().as_vec3(),
                 radius,
+                source: 0,
             })
             .collect();
         agrees_with_all_shapes(&discs, &mut random);
