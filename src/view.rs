@@ -2,6 +2,9 @@
 //! reference draws with it; the core's fixed-point camera is made from it.
 
 use glam::DVec3;
+use rhogrid_core::asset::Rgb;
+
+use crate::picture::widen_rgb565;
 
 /// A pinhole camera. Pixel centres lie at half-integers, x to the right, y
 /// down; the principal point is the middle of the picture.
@@ -50,4 +53,75 @@ pub struct Light {
     pub diffuse: f64,
     /// Whether the light casts shadows.
     pub casts: bool,
+}
+
+/// A directional light of some colour.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lamp {
+    /// Unit vector towards it, world space.
+    pub towards: DVec3,
+    /// Its colour.
+    pub colour: Rgb,
+    /// Diffuse weight, 0 to 1.
+    pub diffuse: f64,
+    /// Whether it casts shadows.
+    pub casts: bool,
+}
+
+/// The picture of a lit sphere, RGB565: ambient light by where a normal points
+/// on the screen. See [`rhogrid_core::scene::Matcap`].
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Matcap {
+    /// A square, row after row.
+    pub texels: Vec<u16>,
+}
+
+impl Matcap {
+    /// The light on a unit normal, 0 to 1 a channel.
+    pub fn light(&self, view: &View, normal: DVec3) -> DVec3 {
+        let side = self.texels.len().isqrt();
+        let at = |along: f64| {
+            let place = (along + 1.0) / 2.0 * side as f64;
+            (place.max(0.0) as usize).min(side.saturating_sub(1))
+        };
+        let (column, row) = (at(normal.dot(view.right)), at(-normal.dot(view.up)));
+        let texel = self.texels.get(row * side + column).copied().unwrap_or(0);
+        DVec3::from_array(widen_rgb565(texel).map(f64::from)) / 255.0
+    }
+}
+
+/// The lights of a scene: colour = material * (ambient + the sum of lamps'
+/// colour * diffuse * max(0, normal . towards)); with a matcap ambient is that of
+/// its texel.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Lighting {
+    /// Ambient weight, 0 to 1.
+    pub ambient: f64,
+    /// What ambient light is.
+    pub matcap: Option<Matcap>,
+    /// The lamps.
+    pub lamps: Vec<Lamp>,
+}
+
+impl Lighting {
+    /// The lamp that casts shadows, if it is the only one that does.
+    pub fn caster(&self) -> Option<&Lamp> {
+        let mut casting = self.lamps.iter().filter(|lamp| lamp.casts);
+        casting.next().filter(|_| casting.next().is_none())
+    }
+}
+
+impl From<Light> for Lighting {
+    fn from(light: Light) -> Self {
+        Self {
+            ambient: light.ambient,
+            matcap: None,
+            lamps: vec![Lamp {
+                towards: light.towards,
+                colour: [255; 3],
+                diffuse: light.diffuse,
+                casts: light.casts,
+            }],
+        }
+    }
 }

@@ -14,6 +14,7 @@ use crate::asset::{Grid, Rgb};
 use crate::numbers::{Unit, Weight};
 use crate::placement::Placement;
 use crate::shade::Paint;
+pub use crate::shade::matcap::Matcap;
 use crate::shadow::Shadows;
 
 /// Lamps in a scene at most.
@@ -56,11 +57,14 @@ pub struct Lamp {
 }
 
 /// The lights of a scene: colour = material * (ambient + the sum of lamps'
-/// colour * diffuse * max(0, normal . towards)), no gamma.
+/// colour * diffuse * max(0, normal . towards)), no gamma. With a matcap, ambient
+/// times its texel takes the place of ambient.
 #[derive(Clone, Copy, Debug)]
 pub struct Lighting<'a> {
     /// Ambient weight.
     pub ambient: Weight,
+    /// Ambient light by where normals point on the screen.
+    pub matcap: Option<Matcap<'a>>,
     /// Up to [`MAX_LAMPS`]; further ones are dark.
     pub lamps: &'a [Lamp],
 }

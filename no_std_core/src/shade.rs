@@ -4,13 +4,17 @@
 //! attribute goes into a table (16 KB a material); where the caller gives no
 //! memory for it, samples are shaded one by one, to the same bytes.
 
+pub(crate) mod matcap;
+
 use crate::asset::{Grid, Level, MAX_MATERIALS, Rgb};
+use crate::camera::Camera;
 use crate::canvas::{Pixel, canvas_rows};
 use crate::draw::Light;
 use crate::normal::{CODES, OCTANT, OCTANT_CODES, decode};
 use crate::numbers::Weight;
 use crate::placement::NormalMap;
 use crate::scene::{Lighting, MAX_LAMPS};
+use matcap::LitSphere;
 
 /// Brightness steps between black and a material's full colour. A step is an
 /// eighth of a level of 6-bit green: rounding to it adds 1/16 to the half level
@@ -42,6 +46,8 @@ struct Model<'a> {
     lamp_count: usize,
     /// How normals meet the lamps; `None` where they do as they are.
     normals: Option<&'a NormalMap>,
+    /// What ambient light is.
+    sphere: Option<LitSphere<'a>>,
 }
 
 /// A directional light as normals meet it.
@@ -92,6 +98,7 @@ impl<'a> Model<'a> {
             lamps: [Beam::default(); MAX_LAMPS],
             lamp_count: 0,
             normals,
+            sphere: None,
         };
         for (ramp, &material) in model.ramps.iter_mut().zip(materials) {
             *ramp = Ramp::new(material);
@@ -124,7 +131,14 @@ impl<'a> Model<'a> {
             None => decode(attribute),
             Some(normals) => normals.normal(attribute),
         };
-        let mut weights = [self.ambient; 3];
+        let mut weights = match &self.sphere {
+            None => [self.ambient; 3],
+            Some(sphere) => sphere.light(normal).map(|channel| {
+                // 255ths, within 2^-8 of the last step.
+                let share = i32::from(channel) + i32::from(channel >> 7);
+                self.ambient * share / WHITE
+            }),
+        };
         for (lamp, bit) in self.lamps.iter().take(self.lamp_count).zip(0..) {
             if unlit >> bit & 1 == 0 {
                 let lit = lamp.cosine(normal).max(0) >> 13;
@@ -138,7 +152,8 @@ impl<'a> Model<'a> {
 
     /// Whether brightness is that of one white light on normals as they are.
     fn is_plain(&self) -> bool {
-        self.normals.is_none() && self.lamp_count == 1 && self.lamps[0].colour == [WHITE; 3]
+        let is_white = self.lamp_count == 1 && self.lamps[0].colour == [WHITE; 3];
+        is_white && self.normals.is_none() && self.sphere.is_none()
     }
 
     /// Fills the table of brightness by normal, which suits every colour, if
@@ -301,7 +316,8 @@ impl<'a> Shader<'a> {
 
     /// The same for a placed grid in a scene's light.
     pub fn placed(
-        lighting: &Lighting<'_>,
+        lighting: &Lighting<'a>,
+        camera: &Camera,
         normals: &'a NormalMap,
         paint: Paint<'a>,
         memory: &'a mut [u16],
@@ -311,7 +327,13 @@ impl<'a> Shader<'a> {
             Beam::new(towards, lamp.diffuse, lamp.colour)
         });
         let sheared = (!normals.is_plain()).then_some(normals);
-        let model = Model::new(lighting.ambient, paint.materials(), beams, sheared);
+        let sphere = lighting
+            .matcap
+            .map(|matcap| LitSphere::new(matcap, camera, normals));
+        let model = Model {
+            sphere,
+            ..Model::new(lighting.ambient, paint.materials(), beams, sheared)
+        };
         Self::with(model, paint, memory)
     }
 
@@ -345,7 +367,7 @@ impl<'a> Shader<'a> {
     pub fn colour_without(&self, attribute: u16, unlit: u32) -> u16 {
         if unlit == 0 {
             self.colour(attribute)
-        } else if self.model.lamp_count == 1 {
+        } else if self.model.lamp_count == 1 && self.model.sphere.is_none() {
             self.dark[usize::from(attribute >> 13) % MAX_MATERIALS]
         } else {
             self.model.colour(attribute, unlit)

@@ -3,13 +3,14 @@
 
 use rhogrid_core::asset::node::{halves, occupied};
 use rhogrid_core::asset::{
-    HEADER_BYTES, HEADER_CRC_OFFSET, KIND_GRID, MAGIC, Rgb, SECTION_BYTES, SECTION_LEVEL,
+    HEADER_BYTES, HEADER_CRC_OFFSET, KIND_GRID, MAGIC, SECTION_BYTES, SECTION_LEVEL,
     SECTION_MATERIALS, Shell, VERSION, checksum,
 };
 
 use super::{Attributes, BakedGrid, BakedLevel, Cube, Masks, dictionary};
 use crate::error::{Error, Place};
 use crate::geometry::Up;
+use crate::picture::rgb565;
 
 /// Serializes a grid.
 ///
@@ -215,20 +216,15 @@ pub(super) fn extend_colours(bytes: &mut Vec<u8>, linked: &Linked<'_>) {
     match linked.attributes {
         Attributes::Bits16 => {}
         Attributes::Bits32 => {
-            let narrow: Vec<u16> = colours.map(|&colour| rgb565(colour)).collect();
+            let narrow: Vec<u16> = colours
+                .map(|&colour| rgb565(colour.map(f64::from)))
+                .collect();
             extend_padded(bytes, &narrow);
         }
         Attributes::Bits48 => {
             bytes.extend(colours.flat_map(|&[red, green, blue]| [red, green, blue, 0]));
         }
     }
-}
-
-/// The nearest 5:6:5 colour.
-fn rgb565(colour: Rgb) -> u16 {
-    let [red, green, blue] = colour.map(u32::from);
-    let nearest = |channel: u32, full: u32| (channel * full + 127) / 255;
-    (nearest(red, 31) << 11 | nearest(green, 63) << 5 | nearest(blue, 31)) as u16
 }
 
 pub(super) fn extend_words(bytes: &mut Vec<u8>, words: &[u32]) {

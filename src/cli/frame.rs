@@ -207,6 +207,7 @@ pub fn draw_shadowed(
     }];
     let lighting = Lighting {
         ambient: light.ambient,
+        matcap: None,
         lamps: &lamps,
     };
     let scene = Scene {

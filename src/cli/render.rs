@@ -25,7 +25,7 @@ use crate::bake::Cube;
 use crate::geometry::Geometry;
 use crate::measure::{Depths, SizeMismatch, against_reference, shadow_errors};
 use crate::reference::{DEFAULT_SAMPLES_PER_AXIS, Reference, Scene, render};
-use crate::view::{Light, View};
+use crate::view::{Lighting, View};
 use report::{Report, print};
 
 /// Arguments of `rhogrid render`.
@@ -103,8 +103,9 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
         let geometry = source_geometry(args)?;
         let scene = Scene::new(&geometry, args.source.two_sided);
         let cube = Cube::of(&geometry)?;
-        let light = float_light(&args.quality);
-        return (0..count).try_for_each(|index| draw_reference(args, &scene, &cube, &light, index));
+        let lighting = float_light(&args.quality).into();
+        return (0..count)
+            .try_for_each(|index| draw_reference(args, &scene, &cube, &lighting, index));
     }
     let model = Model::open(&args.input, &args.source)?;
     let scene = match (&model.geometry, args.compare) {
@@ -158,12 +159,12 @@ fn draw_reference(
     args: &RenderArgs,
     scene: &Scene,
     cube: &Cube,
-    light: &Light,
+    lighting: &Lighting,
     index: u32,
 ) -> Result<(), Failure> {
     let view = view_at(args, index);
     let output = output_at(args, index);
-    let reference = trace(&view, scene, cube, light);
+    let reference = trace(&view, scene, cube, lighting);
     reference.picture().save_png(&output)?;
     if args.json {
         return super::print_json(&ReferenceReport {
@@ -182,13 +183,13 @@ fn draw_reference(
     Ok(())
 }
 
-fn trace(view: &ViewArgs, scene: &Scene, cube: &Cube, light: &Light) -> Reference {
+fn trace(view: &ViewArgs, scene: &Scene, cube: &Cube, lighting: &Lighting) -> Reference {
     let bar = progress_bar();
     bar.set_length(u64::from(view.size.height));
     let reference = render(
         scene,
         &float_view(view, cube),
-        light,
+        lighting,
         DEFAULT_SAMPLES_PER_AXIS,
         &|rows| {
             bar.set_position(u64::from(rows));
@@ -222,7 +223,7 @@ fn draw_grid(
     let picture = frame.picture();
     picture.save_png(&output)?;
     let measures = scene.map(|scene| {
-        let reference = trace(&view, scene, &cube, &float_light(&args.quality));
+        let reference = trace(&view, scene, &cube, &float_light(&args.quality).into());
         let (w, tolerance) = depths(&frame, &camera, asset, args.quality.splat);
         let depths = Depths {
             w: &w,

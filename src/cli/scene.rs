@@ -14,6 +14,7 @@ use crate::bake::GridOptions;
 use crate::error::Error;
 use crate::geometry::Geometry;
 use crate::scene::{Load, Model, Scene, load};
+use crate::view;
 
 /// Whether a file calls itself a scene.
 pub fn is_scene(input: &Path) -> bool {
@@ -97,16 +98,16 @@ pub fn instances<'a>(
 
 /// The lights.
 pub fn lamps(scene: &Scene) -> Vec<Lamp> {
-    let lamp = |lamp: &crate::scene::Lamp| Lamp {
+    let lamp = |lamp: &view::Lamp| Lamp {
         towards: lamp.towards.to_array().map(Unit::from_num),
         colour: lamp.colour,
         diffuse: Weight::from_num(lamp.diffuse),
         casts: lamp.casts,
     };
-    scene.lamps.iter().map(lamp).collect()
+    scene.lighting.lamps.iter().map(lamp).collect()
 }
 
 /// The ambient weight.
 pub fn ambient(scene: &Scene) -> Weight {
-    Weight::from_num(scene.ambient)
+    Weight::from_num(scene.lighting.ambient)
 }

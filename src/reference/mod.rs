@@ -5,7 +5,7 @@
 //! Same camera and shading model as the core, but nothing shared with it: a
 //! regular grid of rays through every pixel, the nearest hit of each found in a
 //! bounding volume hierarchy, shaded with the interpolated normal, and one more
-//! ray towards the light when the light casts shadows. There is no near plane:
+//! ray towards each light that casts shadows. There is no near plane:
 //! everything in front of the eye is seen.
 //!
 //! Geometry is moved to the origin and scaled to radius 1 in `f64` before it is
@@ -22,7 +22,7 @@
 //! - Anything blocks light, whichever side it shows. Facets are flat to shadow
 //!   rays: where smooth normals face the light and the facet does not, the
 //!   facet lies in its own shadow.
-//! - A cloud is a set of white discs, one a point, sized by the local spacing of
+//! - A cloud is a set of discs, one a point, sized by the local spacing of
 //!   the points so that they overlap. Depth and normal are blended over the discs
 //!   that lie within one radius of the first. Discs block light only beyond two
 //!   radii, for overlapping neighbours would speckle each other. Detail below the
@@ -42,9 +42,9 @@ use rayon::prelude::*;
 
 use crate::geometry::Geometry;
 use crate::picture::Picture;
-use crate::view::{Light, View};
+use crate::view::{Lamp, Lighting, View};
 use ray::{Ray, Sides};
-use surface::Surface;
+use surface::{Spot, Surface};
 
 /// Samples on each axis of a pixel unless told otherwise: 16 in all.
 pub const DEFAULT_SAMPLES_PER_AXIS: u32 = 4;
@@ -86,7 +86,7 @@ pub struct Reference {
     /// Largest depth among each pixel's hits; 0 without hits.
     pub farthest: Vec<f32>,
     /// Mean of Lambert's cosine over each pixel's hits, as if nothing cast
-    /// shadows; 0 without hits.
+    /// shadows, of the lamp that casts, if that is one; 0 without hits.
     pub lambert: Vec<f32>,
     /// Share of that light that shadows take away; 0 where there is none.
     pub shadow: Vec<f32>,
@@ -117,23 +117,46 @@ impl Scene {
     }
 
     /// What a ray in scene space sees.
-    fn look(&self, ray: &Ray, light: &Light) -> Option<Sight> {
-        let spot = self.surface.meet(ray, self.sides, light.towards)?;
-        let lambert = spot.normal.dot(light.towards).max(0.0);
-        let shadowed = light.casts && lambert > 0.0 && {
-            let ray = Ray::new(spot.shadow_start, light.towards);
-            self.surface.blocks(&ray)
+    fn look(&self, ray: &Ray, view: &View, lighting: &Lighting) -> Option<Sight> {
+        let spot = self.surface.meet(ray, self.sides)?;
+        let mut light = match &lighting.matcap {
+            None => DVec3::splat(lighting.ambient),
+            Some(matcap) => matcap.light(view, spot.normal) * lighting.ambient,
         };
-        Some(Sight {
+        let mut sight = Sight {
             distance: spot.distance,
-            colour: shade(spot.diffuse, light, if shadowed { 0.0 } else { lambert }),
-            lambert,
-            shadowed,
-        })
+            colour: DVec3::ZERO,
+            lambert: 0.0,
+            shadowed: false,
+        };
+        for lamp in &lighting.lamps {
+            let lambert = spot.normal.dot(lamp.towards).max(0.0);
+            let shadowed = lamp.casts && lambert > 0.0 && self.is_shadowed(&spot, lamp);
+            if !shadowed {
+                let colour = DVec3::from_array(lamp.colour.map(f64::from)) / 255.0;
+                light += colour * lamp.diffuse * lambert;
+            }
+            if lighting.caster() == Some(lamp) {
+                (sight.lambert, sight.shadowed) = (lambert, shadowed);
+            }
+        }
+        sight.colour = (spot.diffuse * light).clamp(DVec3::ZERO, DVec3::splat(255.0));
+        Some(sight)
+    }
+
+    fn is_shadowed(&self, spot: &Spot, lamp: &Lamp) -> bool {
+        let start = spot.shadow_start + lamp.towards * spot.shadow_gap;
+        self.surface.blocks(&Ray::new(start, lamp.towards))
     }
 
     /// Samples one pixel.
-    fn pixel(&self, view: &View, light: &Light, samples_per_axis: u32, x: u32, y: u32) -> Pixel {
+    fn pixel(
+        &self,
+        view: &View,
+        lighting: &Lighting,
+        samples_per_axis: u32,
+        [x, y]: [u32; 2],
+    ) -> Pixel {
         let eye = (view.eye - self.centre) / self.radius;
         let within = |step: u32| (f64::from(step) + 0.5) / f64::from(samples_per_axis);
         let (mut colour, mut hits) = (DVec3::ZERO, 0);
@@ -143,7 +166,7 @@ impl Scene {
             for column in 0..samples_per_axis {
                 let (x_px, y_px) = (f64::from(x) + within(column), f64::from(y) + within(row));
                 let ray = Ray::new(eye, view.direction(x_px, y_px));
-                if let Some(sight) = self.look(&ray, light) {
+                if let Some(sight) = self.look(&ray, view, lighting) {
                     colour += sight.colour;
                     hits += 1;
                     nearest = nearest.min(sight.distance);
@@ -171,12 +194,6 @@ impl Scene {
     }
 }
 
-/// Ambient and diffuse light on a colour, 0 to 255 a channel.
-fn shade(diffuse: DVec3, light: &Light, lambert: f64) -> DVec3 {
-    let colour = diffuse * (light.ambient + light.diffuse * lambert);
-    colour.clamp(DVec3::ZERO, DVec3::splat(255.0))
-}
-
 struct Pixel {
     colour: [u8; 3],
     coverage: f32,
@@ -193,7 +210,7 @@ struct Pixel {
 pub fn render(
     scene: &Scene,
     view: &View,
-    light: &Light,
+    lighting: &Lighting,
     samples_per_axis: u32,
     progress: &(dyn Fn(u32) + Sync),
 ) -> Reference {
@@ -203,7 +220,7 @@ pub fn render(
         .with_max_len(1)
         .map(|y| {
             let row = (0..view.width)
-                .map(|x| scene.pixel(view, light, samples_per_axis.max(1), x, y))
+                .map(|x| scene.pixel(view, lighting, samples_per_axis.max(1), [x, y]))
                 .collect();
             progress(rows_done.fetch_add(1, Ordering::Relaxed) + 1);
             row

@@ -47,14 +47,15 @@ pub(super) struct Spot {
     pub normal: DVec3,
     /// Of the surface there, 0 to 255 a channel.
     pub diffuse: DVec3,
-    /// Where a shadow ray starts.
+    /// Where a shadow ray starts ...
     pub shadow_start: DVec3,
+    /// ... but so far towards the light.
+    pub shadow_gap: f64,
 }
 
 impl Surface {
-    /// What a ray meets first. `towards` is the direction of a possible shadow
-    /// ray.
-    pub fn meet(&self, ray: &Ray, sides: Sides, towards: DVec3) -> Option<Spot> {
+    /// What a ray meets first.
+    pub fn meet(&self, ray: &Ray, sides: Sides) -> Option<Spot> {
         match self {
             Self::Mesh { facets, coats } => {
                 let (facet, hit) = facets.nearest(ray, sides)?;
@@ -69,6 +70,7 @@ impl Surface {
                     },
                     diffuse: coat.colour(weights),
                     shadow_start: facet.point(weights) + seen_side * FACET_SHADOW_GAP,
+                    shadow_gap: 0.0,
                 })
             }
             Self::Cloud { discs, colours } => {
@@ -82,7 +84,8 @@ impl Surface {
                     distance,
                     normal,
                     diffuse,
-                    shadow_start: ray.at(distance) + towards * radius * CLOUD_SHADOW_GAP,
+                    shadow_start: ray.at(distance),
+                    shadow_gap: radius * CLOUD_SHADOW_GAP,
                 })
             }
         }

@@ -176,7 +176,13 @@ impl Model {
         let views = self.views.iter();
         let draw = |view| {
             let view = float_view(view, &self.cube);
-            render(&self.scene, &view, &bright(), samples_per_axis, &|_| {})
+            render(
+                &self.scene,
+                &view,
+                &bright().into(),
+                samples_per_axis,
+                &|_| {},
+            )
         };
         views.map(draw).collect()
     }

@@ -1,7 +1,7 @@
 //! SCENE.toml as it is written.
 
 use std::ops::Range;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 use toml::Spanned;
@@ -13,13 +13,14 @@ use crate::geometry::Up;
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SceneFile {
-    /// Weight of the ambient light.
-    #[serde(default = "ambient")]
-    pub ambient: f64,
+    /// Weight of the ambient light; without one 0.2, or 1 with a matcap.
+    pub ambient: Option<f64>,
+    /// A picture of a lit sphere, which ambient light is taken from.
+    pub matcap: Option<Spanned<PathBuf>>,
     /// What stands where.
     #[serde(default)]
     pub instance: Vec<Spanned<InstanceTable>>,
-    /// The lights; none given is one from (1, 2, 1.5).
+    /// The lights; none given is one from (1, 2, 1.5), or none with a matcap.
     #[serde(default)]
     pub light: Vec<Spanned<LightTable>>,
     /// A plane that everything stands on.
@@ -134,10 +135,6 @@ pub struct GroundTable {
     pub colour: [u8; 3],
     /// How finely it is sampled.
     pub level: Option<u8>,
-}
-
-fn ambient() -> f64 {
-    0.2
 }
 
 fn white() -> [u8; 3] {

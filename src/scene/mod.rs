@@ -11,15 +11,21 @@ use std::path::{Path, PathBuf};
 
 use glam::DVec3;
 use rhogrid_core::asset::{MAX_MATERIALS, Shell};
-use rhogrid_core::scene::MAX_LAMPS;
+use rhogrid_core::scene::{MAX_LAMPS, Matcap as CoreMatcap};
+use toml::Spanned;
 
 use crate::asset_file::AssetFile;
 use crate::bake::{Cube, GridOptions};
 use crate::error::Error;
 use crate::geometry::{Geometry, Material, Mesh, Triangle};
+use crate::picture::{Picture, rgb565};
+use crate::view::{Lamp, Lighting, Matcap};
 use file::{GroundTable, InstanceTable, LightTable, ShellName, Source};
 
 pub use place::Affine;
+
+/// Ambient weight without a matcap, unless a file says otherwise.
+const AMBIENT: f64 = 0.2;
 
 /// What a model of a scene is made with.
 pub trait Load {
@@ -56,19 +62,6 @@ pub struct Instance {
     pub materials: Option<Vec<[u8; 3]>>,
 }
 
-/// A directional light.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Lamp {
-    /// Unit vector towards it.
-    pub towards: DVec3,
-    /// Its colour.
-    pub colour: [u8; 3],
-    /// Diffuse weight.
-    pub diffuse: f64,
-    /// Whether it casts shadows.
-    pub casts: bool,
-}
-
 /// A scene, its models in memory.
 #[derive(Debug)]
 pub struct Scene {
@@ -76,10 +69,8 @@ pub struct Scene {
     pub models: Vec<Model>,
     /// Where they stand.
     pub instances: Vec<Instance>,
-    /// One to three lights.
-    pub lamps: Vec<Lamp>,
-    /// Ambient weight.
-    pub ambient: f64,
+    /// Its lights.
+    pub lighting: Lighting,
     /// Its box; its half side is its radius.
     pub cube: Cube,
 }
@@ -123,24 +114,55 @@ pub fn load(file: &Path, models: Option<&Path>, load: &mut dyn Load) -> Result<S
         let lamp = lamp(table.get_ref()).map_err(|wrong| wrong.at(&source, table.span()))?;
         lamps.push(lamp);
     }
-    if lamps.is_empty() {
+    let matcap = match &content.matcap {
+        None => None,
+        Some(name) => Some(matcap(file, name, &source)?),
+    };
+    if lamps.is_empty() && matcap.is_none() {
         lamps.push(default_lamp());
     }
     if lamps.len() > MAX_LAMPS {
         let span = content.light[MAX_LAMPS].span();
         return Err(source.error(span, "there are more than three lights", "leave some out"));
     }
-    if !(0.0..=1.0).contains(&content.ambient) {
+    let unless_said = if matcap.is_some() { 1.0 } else { AMBIENT };
+    let ambient = content.ambient.unwrap_or(unless_said);
+    if !(0.0..=1.0).contains(&ambient) {
         return Err(source.error(0..0, "ambient is not between 0 and 1", "give a weight"));
     }
     let cube = bounds(&models, &instances);
     Ok(Scene {
         models,
         instances,
-        lamps,
-        ambient: content.ambient,
+        lighting: Lighting {
+            ambient,
+            matcap,
+            lamps,
+        },
         cube,
     })
+}
+
+/// Reads a picture of a lit sphere, relative to the scene's file.
+fn matcap(file: &Path, name: &Spanned<PathBuf>, source: &Source<'_>) -> Result<Matcap, Error> {
+    let path = file.parent().unwrap_or(Path::new("")).join(name.get_ref());
+    let picture = Picture::load(&path)?;
+    let colours = picture
+        .rgb
+        .iter()
+        .map(|colour| rgb565(colour.map(f64::from)));
+    let matcap = Matcap {
+        texels: colours.collect(),
+    };
+    let is_square = picture.width == picture.height;
+    match CoreMatcap::new(&matcap.texels) {
+        Some(_) if is_square => Ok(matcap),
+        _ => {
+            let what = format!("a matcap of {} by {} pixels", picture.width, picture.height);
+            let remedy = "give a square of at most 1024 pixels a side";
+            Err(source.error(name.span(), what, remedy))
+        }
+    }
 }
 
 /// What is wrong with a table.
@@ -346,6 +368,12 @@ fn bounds(models: &[Model], instances: &[Instance]) -> Cube {
 }
 
 impl Scene {
+    /// What ambient light is, for the core.
+    pub fn matcap(&self) -> Option<CoreMatcap<'_>> {
+        let matcap = self.lighting.matcap.as_ref()?;
+        CoreMatcap::new(&matcap.texels)
+    }
+
     /// Everything as one mesh in the world, for the reference; `None` where a
     /// model's geometry is not known or is a cloud.
     pub fn merged(&self) -> Option<Mesh> {

@@ -1,5 +1,7 @@
 //! Scenes and shadows, from files to pictures.
 
+use rhogrid::picture::Picture;
+
 use super::{Folder, png};
 
 /// A box over a ground, and one light.
@@ -80,6 +82,77 @@ fn a_model_alone_in_a_scene_is_the_model() {
     let pairs = model.rgb.iter().zip(&scene.rgb);
     let is_step = |(a, b): (&[u8; 3], &[u8; 3])| a.iter().zip(b).all(|(a, b)| a.abs_diff(*b) <= 9);
     assert!({ pairs }.all(is_step), "more than a step of 5 bits apart");
+}
+
+/// Red, green, blue and white from above and the sides, one with shadows.
+#[test]
+fn lamps_and_matcaps_are_those_of_the_reference() {
+    let folder = Folder::new();
+    let lamps = BOXES.to_owned()
+        + "colour = [255, 90, 60]\nintensity = 0.5\n[[light]]\ntowards = [-1, 1, 2]\n\
+        colour = [60, 255, 90]\nintensity = 0.4\nshadows = false\n\
+        [[light]]\ntowards = [0, 0.1, 1]\ncolour = [60, 90, 255]\nshadows = false\n";
+    folder.write("lamps.toml", lamps);
+    let sphere: Vec<[u8; 3]> = (0..16u8).map(|i| [i * 16, 255 - i * 9, i * 7]).collect();
+    let picture = Picture {
+        width: 4,
+        height: 4,
+        drawn: vec![true; sphere.len()],
+        rgb: sphere,
+    };
+    picture.save_png(&folder.path("sphere.png")).unwrap();
+    let (without_light, _) = BOXES.split_once("[[light]]").expect("a light");
+    let matcap = |more: &str| format!("matcap = \"sphere.png\"\n{more}{without_light}");
+    folder.write("matcap.toml", matcap(""));
+    folder.write("dim.toml", matcap("ambient = 0.5\n"));
+    let psnr = |scene: &str| {
+        let report = folder.json(&format!(
+            "render {scene} -o a.png {VIEW} --yaw 30 --compare"
+        ));
+        let psnr = report["psnr_inside"].as_f64().expect("differs");
+        assert!(psnr > 23.0, "{scene}: {psnr} dB");
+        report
+    };
+    assert!(
+        psnr("lamps.toml")["shadow_errors"]
+            .as_f64()
+            .expect("one casts")
+            <= 0.02
+    );
+    assert!(psnr("matcap.toml")["shadow_errors"].is_null());
+    assert_ne!(
+        psnr("matcap.toml")["frame_hash"],
+        psnr("dim.toml")["frame_hash"]
+    );
+}
+
+#[test]
+fn matcaps_are_square_pictures() {
+    let folder = Folder::new();
+    let picture = Picture {
+        width: 3,
+        height: 2,
+        rgb: vec![[1; 3]; 6],
+        drawn: vec![true; 6],
+    };
+    picture.save_png(&folder.path("wide.png")).unwrap();
+    folder.write("text.png", "no picture");
+    for (name, wanted) in [
+        (
+            "wide.png",
+            "bad.toml:1: a matcap of 3 by 2 pixels; give a square",
+        ),
+        ("text.png", "text.png: not a picture"),
+        ("none.png", "none.png: cannot be read"),
+    ] {
+        folder.write(
+            "bad.toml",
+            format!("matcap = \"{name}\"\n[ground]\nsize = 1\n"),
+        );
+        let run = folder.run("render bad.toml -o a.png");
+        assert_eq!(run.code, 1, "{}", run.stderr);
+        assert!(run.stderr.contains(wanted), "{name}: {}", run.stderr);
+    }
 }
 
 #[test]

@@ -64,7 +64,7 @@ impl<'a> Colours<'a> {
 }
 
 /// The nearest of eight bits, which full five or six bits make full.
-fn expanded(colour: u16) -> Rgb {
+pub(crate) fn expanded(colour: u16) -> Rgb {
     let [red, green, blue] = [colour >> 11, colour >> 5 & 63, colour & 31];
     [
         (red << 3 | red >> 2) as u8,

@@ -83,6 +83,7 @@ mod records;
 mod section;
 
 pub use colours::Colours;
+pub(crate) use colours::expanded;
 pub use error::AssetError;
 pub use level::Level;
 pub use records::{Record, Records};

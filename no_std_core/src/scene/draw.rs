@@ -148,7 +148,13 @@ impl InstanceFrame<'_> {
         let grid = self.instance.grid;
         let plan = Plan::with(grid, self.camera, self.quality, &self.projection);
         let shades = if plan.tabulates { shades } else { &mut [] };
-        let shader = Shader::placed(&self.scene.lighting, &self.normals, paint, shades);
+        let shader = Shader::placed(
+            &self.scene.lighting,
+            self.camera,
+            &self.normals,
+            paint,
+            shades,
+        );
         let to_w = DepthToW::new(&self.projection);
         for strip in target.strips::<P>() {
             let (canvas, picture) = target.parts();

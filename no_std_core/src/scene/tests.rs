@@ -126,6 +126,7 @@ fn a_grid_alone_is_drawn_as_ever() {
             }],
             lighting: Lighting {
                 ambient: light.ambient,
+                matcap: None,
                 lamps: &[lamp],
             },
             shadows: Shadows::default(),
@@ -183,10 +184,13 @@ fn one_pass_and_bands_give_the_pixels_of_two_passes() {
         let (width, height) = (rng.u16(1..=300), rng.u16(1..=150));
         let camera = looking(eye, forward, direction(&mut rng), focal, width, height);
         let quality = quality(&mut rng);
+        let texels: Vec<u16> = (0..64).map(|_| rng.u16(..)).collect();
+        let matcap = Matcap::new(&texels).filter(|_| rng.u8(..4) == 0);
         let scene = |shadows: Shadows| Scene {
             instances: &instances,
             lighting: Lighting {
                 ambient: Weight::from_num(0.1),
+                matcap,
                 lamps: &lamps,
             },
             shadows,
@@ -249,6 +253,7 @@ fn scenes_of_nothing_are_black() {
                 instances,
                 lighting: Lighting {
                     ambient: Weight::ONE,
+                    matcap: None,
                     lamps: &lamps,
                 },
                 shadows: shadows(&mut rng, method),

@@ -1,6 +1,8 @@
 use super::*;
 use crate::numbers::{Unit, Weight};
-use crate::testing::{Rng, direction, dot};
+use crate::placement::{Inverse, Placement};
+use crate::scene::{Lamp, Matcap};
+use crate::testing::{Rng, camera, direction, dot};
 
 const WHITE: u16 = 0xffff;
 
@@ -126,6 +128,58 @@ fn senseless_lights_do_no_harm() {
                 let colour = shader.colour(code);
                 assert!(weight != 0 || colour == 0, "{light:?}");
                 assert!(weight == 0 || !lit || colour > 0, "{light:?}");
+            }
+        }
+    }
+}
+
+/// With one lamp or none, in a table or without: ambient is the texel's share.
+#[test]
+fn matcaps_are_ambient_light() {
+    let mut rng = Rng::with_seed(45);
+    let identity = || Inverse::of(&Placement::IDENTITY).expect("has volume");
+    for case in 0..40 {
+        // Of one colour: where a normal is found is another test's.
+        let texel = rng.u16(..);
+        let texels = [texel; 16];
+        let lamp = Lamp {
+            towards: direction(&mut rng).map(Unit::from_num),
+            colour: [255; 3],
+            diffuse: Weight::from_num(rng.f64()),
+            casts: true,
+        };
+        let lamps = [lamp];
+        let lighting = Lighting {
+            ambient: Weight::from_num(rng.f64()),
+            matcap: Matcap::new(&texels),
+            lamps: &lamps[..rng.usize(..2)],
+        };
+        let camera = camera(&mut rng, 4.0, 64.0);
+        let normals = NormalMap::new(&Placement::IDENTITY, identity());
+        let paint = Paint::Materials(&[[255, 128, 64]]);
+        let mut memory = std::vec![0; CODES];
+        let table = Shader::placed(&lighting, &camera, &normals, paint, &mut memory);
+        let direct = Shader::placed(&lighting, &camera, &normals, paint, &mut []);
+        let share = channels(texel).map(f64::from);
+        let share = [share[0] / 31.0, share[1] / 63.0, share[2] / 31.0];
+        for attribute in 0..CODES as u16 {
+            let normal = decode(attribute).map(|c| f64::from(c) / 16384.0);
+            let towards = lamp.towards.map(|c| c.to_num());
+            for (unlit, lit) in [(0, lighting.lamps.len()), (1, 0)] {
+                let got = direct.colour_without(attribute, unlit);
+                assert_eq!(got, table.colour_without(attribute, unlit));
+                let weight = lamp.diffuse.to_num::<f64>() * dot(normal, towards).max(0.0);
+                let weight = if lit > 0 { weight } else { 0.0 };
+                let full = [(255.0, 31.0), (128.0, 63.0), (64.0, 31.0)];
+                for (channel, (value, levels)) in full.into_iter().enumerate() {
+                    let light = lighting.ambient.to_num::<f64>() * share[channel] + weight;
+                    let want = value / 255.0 * levels * light.min(1.0);
+                    let error = (f64::from(channels(got)[channel]) - want).abs();
+                    assert!(
+                        error < 0.75,
+                        "case {case}, {attribute:#x}: {got:#x}, {want}"
+                    );
+                }
             }
         }
     }

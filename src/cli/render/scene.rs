@@ -1,7 +1,7 @@
 //! `rhogrid render SCENE.toml`.
 
 use rhogrid_core::numbers::Length;
-use rhogrid_core::scene::{Lighting, Scene as CoreScene};
+use rhogrid_core::scene::{Lighting as CoreLighting, Scene as CoreScene};
 use rhogrid_core::shadow::{Method, Shadows};
 
 use super::super::Failure;
@@ -14,7 +14,7 @@ use crate::geometry::Geometry;
 use crate::measure::{SizeMismatch, against_reference, shadow_errors};
 use crate::reference;
 use crate::scene::Scene;
-use crate::view::Light;
+use crate::view::Lighting;
 
 /// Draws and writes one picture or an orbit of them.
 pub fn run(args: &RenderArgs) -> Result<(), Failure> {
@@ -31,55 +31,41 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
         false => None,
     };
     (0..count).try_for_each(|index| match &original {
-        Some((original, light)) if args.reference => {
-            draw_reference(args, original, &scene.cube, light, index)
+        Some((original, lighting)) if args.reference => {
+            draw_reference(args, original, &scene.cube, lighting, index)
         }
         original => draw(args, &scene, original.as_ref(), index),
     })
 }
 
 /// The original geometry and its light, for the reference.
-fn original(args: &RenderArgs, scene: &Scene) -> Result<(reference::Scene, Light), Failure> {
-    let wrong = |what: &str, remedy: &str| {
-        let file = args.input.display();
-        Failure::failed(format!("{file}: {what}"), remedy)
-    };
+fn original(args: &RenderArgs, scene: &Scene) -> Result<(reference::Scene, Lighting), Failure> {
     let mesh = scene.merged().ok_or_else(|| {
-        wrong(
-            "the reference draws scenes of meshes alone, with 255 materials",
+        let file = args.input.display();
+        Failure::failed(
+            format!("{file}: the reference draws scenes of meshes alone, with 255 materials"),
             "name meshes, not assets or clouds",
         )
     })?;
-    let [lamp] = scene.lamps[..] else {
-        return Err(wrong(
-            "the reference draws scenes with one light",
-            "leave the others out",
-        ));
-    };
-    if lamp.colour != [255; 3] {
-        return Err(wrong(
-            "the reference draws white lights alone",
-            "leave colour out",
-        ));
-    }
     let is_two_sided = scene
         .models
         .iter()
         .any(|model| model.asset.grid().two_sided());
-    let light = Light {
-        towards: lamp.towards,
-        ambient: scene.ambient,
-        diffuse: lamp.diffuse,
-        casts: lamp.casts && args.quality.shadows != Some(ShadowChoice::Off),
-    };
+    let mut lighting = scene.lighting.clone();
+    if args.quality.shadows == Some(ShadowChoice::Off) {
+        lighting
+            .lamps
+            .iter_mut()
+            .for_each(|lamp| lamp.casts = false);
+    }
     let original = reference::Scene::new(&Geometry::Mesh(mesh), is_two_sided);
-    Ok((original, light))
+    Ok((original, lighting))
 }
 
 fn draw(
     args: &RenderArgs,
     scene: &Scene,
-    original: Option<&(reference::Scene, Light)>,
+    original: Option<&(reference::Scene, Lighting)>,
     index: u32,
 ) -> Result<(), Failure> {
     let view = view_at(args, index);
@@ -88,8 +74,9 @@ fn draw(
     let instances = instances(scene, &grids, &placements);
     let content = CoreScene {
         instances: &instances,
-        lighting: Lighting {
+        lighting: CoreLighting {
             ambient: ambient(scene),
+            matcap: scene.matcap(),
             lamps: &lamps,
         },
         shadows: core_shadows(&args.quality, ShadowChoice::OnePass),
@@ -102,10 +89,10 @@ fn draw(
     let frame = draw_placed(&content, &camera, &quality, args.frames);
     let picture = frame.picture();
     picture.save_png(&output)?;
-    let measures = original.map(|(original, light)| {
-        let reference = trace(&view, original, &scene.cube, light);
+    let measures = original.map(|(original, lighting)| {
+        let reference = trace(&view, original, &scene.cube, lighting);
         let mut measures = against_reference(&picture, None, &reference)?;
-        if content.shadows.method != Method::Off && light.casts {
+        if content.shadows.method != Method::Off && lighting.caster().is_some() {
             let dark = Shadows {
                 method: Method::Off,
                 ..content.shadows

@@ -12,8 +12,10 @@
 //!       4  view count                   13  splat, distortion
 //!       5  first view, byte offset      15  repair | culling << 1 | shadows << 2
 //!       6  asset count                  16  map's size, splat, bias
-//!       7  first asset, byte offset     19  views, assets, instances, lamps, and
-//!       8  instance count                   the assets' bytes
+//!       7  first asset, byte offset     19  matcap's texel count, 0 for none
+//!       8  instance count              20  first texel, byte offset
+//!                                      21  views, assets, instances, lamps,
+//!                                          texels, and the assets' bytes
 //! view:     two cameras
 //! camera:   eye x, y, z (2 words each, low first), right, up, forward x, y, z,
 //!           focal length (2), near (2)
@@ -21,6 +23,7 @@
 //! instance: asset, materials (0: the asset's own), 8 colours red | green << 8 |
 //!           blue << 16, origin x, y, z and axes (2 words each)
 //! lamp:     towards x, y, z, colour, diffuse, casts
+//! texel:    RGB565, two in a word, padded
 //! ```
 
 #![no_std]
@@ -38,7 +41,7 @@ use rhogrid_core::camera::Camera;
 use rhogrid_core::draw::{Light, Quality};
 use rhogrid_core::numbers::Weight;
 use rhogrid_core::placement::Placement;
-use rhogrid_core::scene::Lamp;
+use rhogrid_core::scene::{Lamp, Matcap};
 use rhogrid_core::shadow::{Method, Shadows};
 
 pub use read::{Frame, FrameError};
@@ -49,7 +52,7 @@ pub use write::write;
 pub const MAGIC: u32 = u32::from_le_bytes(*b"RHFR");
 
 /// Version that this crate reads and writes.
-pub const VERSION: u32 = 4;
+pub const VERSION: u32 = 5;
 
 /// Most assets of a frame file.
 pub const MAX_ASSETS: usize = 16;
@@ -58,7 +61,7 @@ pub const MAX_ASSETS: usize = 16;
 pub const MAX_INSTANCES: usize = 64;
 
 /// Words of the header.
-const HEADER_WORDS: usize = 19;
+const HEADER_WORDS: usize = 21;
 
 /// Words of one camera.
 const CAMERA_WORDS: usize = 19;
@@ -74,6 +77,9 @@ const INSTANCE_BYTES: usize = (2 + MAX_MATERIALS + 4 * 3 * 2) * 4;
 
 /// Bytes of one lamp.
 const LAMP_BYTES: usize = 6 * 4;
+
+/// Bytes of one texel.
+const TEXEL_BYTES: usize = 2;
 
 /// What all views of a frame file share.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -165,6 +171,8 @@ pub struct Content<'a> {
     pub instances: &'a [Placed],
     /// The lights.
     pub lamps: &'a [Lamp],
+    /// What ambient light is.
+    pub matcap: Option<Matcap<'a>>,
 }
 
 /// The light of one asset that stands alone and casts no shadows: what

@@ -5,12 +5,12 @@ use rhogrid_core::camera::Camera;
 use rhogrid_core::draw::{Light, Quality};
 use rhogrid_core::numbers::{Length, SplatPx, Unit, Weight};
 use rhogrid_core::placement::Placement;
-use rhogrid_core::scene::Lamp;
+use rhogrid_core::scene::{Lamp, Matcap};
 use rhogrid_core::shadow::{Method, Shadows};
 
 use crate::{
     ASSET_BYTES, HEADER_WORDS, INSTANCE_BYTES, LAMP_BYTES, MAGIC, MAX_ASSETS, MAX_INSTANCES,
-    Materials, Placed, Settings, VERSION, VIEW_BYTES, View, lone_light,
+    Materials, Placed, Settings, TEXEL_BYTES, VERSION, VIEW_BYTES, View, lone_light,
 };
 
 /// Why bytes are not a frame file.
@@ -25,8 +25,10 @@ pub enum FrameError {
     /// A part reaches beyond the file or overlaps the header, there are too
     /// many, or one names another that is not there.
     Layout,
-    /// An asset's offset is not a multiple of four.
+    /// An asset or the texels do not lie at a multiple of four.
     Alignment,
+    /// The texels are no matcap.
+    Matcap,
 }
 
 /// A frame file in memory.
@@ -38,6 +40,7 @@ pub struct Frame<'a> {
     assets: &'a [u8],
     instances: &'a [u8],
     lamps: &'a [u8],
+    matcap: Option<Matcap<'a>>,
 }
 
 impl<'a> Frame<'a> {
@@ -59,23 +62,27 @@ impl<'a> Frame<'a> {
             .get(..header.word() as usize)
             .ok_or(FrameError::Truncated)?;
         let size = header.word();
-        let mut part = |size: usize, most: usize| {
+        let part = |header: &mut Words<'_>, size: usize, most: usize| {
             let (count, offset) = (header.word() as usize, header.word() as usize);
-            let end = offset.checked_add(count.checked_mul(size)?)?;
+            let end = count.saturating_mul(size).saturating_add(offset);
             let is_sound = offset >= HEADER_WORDS * 4 && count <= most;
-            file.get(offset..end).filter(|_| is_sound)
+            let bytes = file.get(offset..end).filter(|_| is_sound);
+            bytes.ok_or(FrameError::Layout)
         };
-        let views = part(VIEW_BYTES, usize::MAX).ok_or(FrameError::Layout)?;
-        let assets = part(ASSET_BYTES, MAX_ASSETS).ok_or(FrameError::Layout)?;
-        let instances = part(INSTANCE_BYTES, MAX_INSTANCES).ok_or(FrameError::Layout)?;
-        let lamps = part(LAMP_BYTES, usize::MAX).ok_or(FrameError::Layout)?;
+        let views = part(&mut header, VIEW_BYTES, usize::MAX)?;
+        let assets = part(&mut header, ASSET_BYTES, MAX_ASSETS)?;
+        let instances = part(&mut header, INSTANCE_BYTES, MAX_INSTANCES)?;
+        let lamps = part(&mut header, LAMP_BYTES, usize::MAX)?;
+        let settings = settings(size, &mut header);
+        let texels = part(&mut header, TEXEL_BYTES, usize::MAX)?;
         let frame = Self {
-            settings: settings(size, &mut header),
+            settings,
             file,
             views,
             assets,
             instances,
             lamps,
+            matcap: matcap(texels)?,
         };
         frame.check().map(|()| frame)
     }
@@ -139,16 +146,30 @@ impl<'a> Frame<'a> {
         self.lamps.chunks_exact(LAMP_BYTES).map(lamp)
     }
 
+    /// What ambient light is.
+    pub fn matcap(&self) -> Option<Matcap<'a>> {
+        self.matcap
+    }
+
     /// The light of one asset that stands alone and casts no shadows: what
     /// [`rhogrid_core::draw::draw`] draws. `None` for scenes.
     pub fn lone_light(&self) -> Option<Light> {
         let (mut instances, mut lamps) = (self.instances(), self.lamps());
         let first = (instances.next(), lamps.next());
         match (instances.next(), lamps.next()) {
-            (None, None) => lone_light(&self.settings, first.0, first.1),
+            (None, None) if self.matcap.is_none() => lone_light(&self.settings, first.0, first.1),
             _ => None,
         }
     }
+}
+
+/// None without texels.
+fn matcap(texels: &[u8]) -> Result<Option<Matcap<'_>>, FrameError> {
+    if texels.is_empty() {
+        return Ok(None);
+    }
+    let texels = bytemuck::try_cast_slice(texels).map_err(|_| FrameError::Alignment)?;
+    Matcap::new(texels).map(Some).ok_or(FrameError::Matcap)
 }
 
 fn settings(size: u32, header: &mut Words<'_>) -> Settings {

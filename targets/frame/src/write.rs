@@ -8,7 +8,7 @@ use rhogrid_core::shadow::Method;
 
 use crate::{
     ASSET_BYTES, Content, HEADER_WORDS, INSTANCE_BYTES, LAMP_BYTES, MAGIC, MAX_ASSETS,
-    MAX_INSTANCES, Placed, VERSION, VIEW_BYTES,
+    MAX_INSTANCES, Placed, TEXEL_BYTES, VERSION, VIEW_BYTES,
 };
 
 /// Hands a frame file to `put` in order, in pieces; returns its length in
@@ -37,6 +37,13 @@ pub fn write(content: &Content<'_>, mut put: impl FnMut(&[u8])) -> Option<u32> {
     for lamp in content.lamps {
         put_lamp(lamp, &mut put);
     }
+    let texels = texels(content);
+    for texel in texels {
+        put(&texel.to_le_bytes());
+    }
+    if !texels.len().is_multiple_of(2) {
+        put(&[0; TEXEL_BYTES]);
+    }
     for asset in content.assets {
         put(asset);
         let padding = asset.len().next_multiple_of(4) - asset.len();
@@ -45,12 +52,17 @@ pub fn write(content: &Content<'_>, mut put: impl FnMut(&[u8])) -> Option<u32> {
     Some(layout.length)
 }
 
+fn texels<'a>(content: &Content<'a>) -> &'a [u16] {
+    content.matcap.map_or(&[], |matcap| matcap.texels())
+}
+
 /// Byte offsets.
 struct Layout {
     views: u32,
     assets: u32,
     instances: u32,
     lamps: u32,
+    texels: u32,
     /// The first asset's bytes.
     bytes: u32,
     length: u32,
@@ -69,6 +81,7 @@ impl Layout {
         let assets = part(content.assets.len(), ASSET_BYTES)?;
         let instances = part(content.instances.len(), INSTANCE_BYTES)?;
         let lamps = part(content.lamps.len(), LAMP_BYTES)?;
+        let texels = part(texels(content).len().next_multiple_of(2), TEXEL_BYTES)?;
         let bytes = part(0, 0)?;
         for asset in content.assets {
             part(asset.len().checked_next_multiple_of(4)?, 1)?;
@@ -78,6 +91,7 @@ impl Layout {
             assets,
             instances,
             lamps,
+            texels,
             bytes,
             length: part(0, 0)?,
         })
@@ -114,6 +128,8 @@ fn header(content: &Content<'_>, layout: &Layout) -> [u32; HEADER_WORDS] {
         u32::from(settings.shadows.size),
         settings.shadows.splat.to_bits(),
         settings.shadows.bias.to_bits(),
+        texels(content).len() as u32,
+        layout.texels,
     ]
 }
 

@@ -4,11 +4,14 @@ use rhogrid_core::camera::{Camera, Orbit};
 use rhogrid_core::draw::Quality;
 use rhogrid_core::numbers::{FocalPx, Length, SplatPx, Turns, Unit, Weight};
 use rhogrid_core::placement::Placement;
-use rhogrid_core::scene::Lamp;
+use rhogrid_core::scene::{Lamp, Matcap};
 use rhogrid_core::shadow::{Method, Shadows};
 use rhogrid_frame::{
     Content, Frame, FrameError, MAX_ASSETS, MAX_INSTANCES, Materials, Placed, Settings, View, write,
 };
+
+/// An odd number, so that what follows needs padding.
+const TEXELS: [u16; 9] = [1, 2, 3, 4, 5, 0xfffe, 7, 8, 9];
 
 const ASSETS: [&[u8]; 3] = [b"an asset of 23 bytes...", b"", b"four"];
 
@@ -99,6 +102,7 @@ fn content<'a>(views: &'a [View], assets: &'a [&'a [u8]]) -> Content<'a> {
         assets,
         instances: &[],
         lamps: &[],
+        matcap: None,
     }
 }
 
@@ -113,6 +117,7 @@ fn file() -> Vec<u8> {
     written(&Content {
         instances: &placed(),
         lamps: &lamps(),
+        matcap: Matcap::new(&TEXELS),
         ..content(&views(), &ASSETS)
     })
 }
@@ -126,6 +131,7 @@ fn everything_comes_back() {
     assert_eq!(frame.views().collect::<Vec<_>>(), views());
     assert_eq!(frame.instances().collect::<Vec<_>>(), placed());
     assert_eq!(frame.lamps().collect::<Vec<_>>(), lamps());
+    assert_eq!(frame.matcap(), Matcap::new(&TEXELS));
     assert_eq!(frame.assets().collect::<Vec<_>>(), ASSETS);
     for asset in frame.assets() {
         assert_eq!((asset.as_ptr() as usize - bytes.as_ptr() as usize) % 4, 0);
@@ -157,6 +163,13 @@ fn one_asset_in_one_white_light_stands_alone() {
     assert_eq!(light(&[placed], &[white], Method::Off), None);
     assert_eq!(light(&[alone, placed], &[white], Method::Off), None);
     assert_eq!(light(&[alone], &[white, white], Method::Off), None);
+    let bytes = written(&Content {
+        instances: &[alone],
+        lamps: &[white],
+        matcap: Matcap::new(&TEXELS),
+        ..content(&[], &ASSETS)
+    });
+    assert_eq!(Frame::open(&bytes).expect("opens").lone_light(), None);
 }
 
 #[test]
@@ -209,6 +222,9 @@ fn wrong_words_are_refused() {
         u32::from_le_bytes(bytes[offset..offset + 4].try_into().expect("a word")) as usize
     };
     let (assets, instances) = (word(28), word(36));
+    assert_eq!(with(76, 8), FrameError::Matcap);
+    assert_eq!(with(76, u32::MAX), FrameError::Layout);
+    assert_eq!(with(80, word(80) as u32 + 1), FrameError::Alignment);
     assert_eq!(with(assets, 78), FrameError::Alignment);
     assert_eq!(with(assets, 0), FrameError::Layout);
     assert_eq!(with(assets + 4, u32::MAX), FrameError::Layout);
@@ -218,7 +234,7 @@ fn wrong_words_are_refused() {
 #[test]
 fn any_single_bit_flip_in_the_header_is_survived() {
     let bytes = file();
-    for bit in 0..19 * 32 {
+    for bit in 0..21 * 32 {
         let mut flipped = bytes.clone();
         flipped[bit / 8] ^= 1 << (bit % 8);
         if let Ok(frame) = Frame::open(&flipped) {

@@ -19,7 +19,7 @@ use rhogrid_core::camera::{Camera, Orbit};
 use rhogrid_core::draw::{Light, Quality, draw, shades_len};
 use rhogrid_core::numbers::{FocalPx, Length, SplatPx, Turns, Unit, Weight};
 use rhogrid_core::placement::Placement;
-use rhogrid_core::scene::{Instance, Lamp, Lighting, Memory, Scene, draw_scene};
+use rhogrid_core::scene::{Instance, Lamp, Lighting, Matcap, Memory, Scene, draw_scene};
 use rhogrid_core::shadow::{Method, Shadows};
 use rhogrid_core::target::{Layers, Rect, Target, frame_hash};
 use rhogrid_frame::Frame;
@@ -167,6 +167,7 @@ fn draw_unknown_scene() {
         instances: &instances,
         lighting: Lighting {
             ambient: black_box(Weight::ZERO),
+            matcap: Matcap::new(unknown_words()),
             lamps: &[lamp(), lamp(), lamp()],
         },
         shadows: Shadows {

@@ -5,7 +5,7 @@ use rhogrid_core::camera::Camera;
 use rhogrid_core::draw::{Light, draw};
 use rhogrid_core::numbers::{Unit, Weight};
 use rhogrid_core::placement::Placement;
-use rhogrid_core::scene::{Instance, Lamp, Lighting, MAX_LAMPS, Memory, Scene, draw_scene};
+use rhogrid_core::scene::{Instance, Lamp, Lighting, MAX_LAMPS, Matcap, Memory, Scene, draw_scene};
 use rhogrid_core::shadow::Method;
 use rhogrid_core::stats::Stats;
 use rhogrid_core::target::{Layers, Target, TargetError};
@@ -30,6 +30,7 @@ pub struct Content<'a> {
     placed: [Option<(Placed, &'a Grid<'a>)>; MAX_INSTANCES],
     lamps: [Lamp; MAX_LAMPS],
     lamp_count: usize,
+    matcap: Option<Matcap<'a>>,
     lone: Option<Light>,
 }
 
@@ -45,6 +46,7 @@ impl<'a> Content<'a> {
             placed: [None; MAX_INSTANCES],
             lamps: [DARK; MAX_LAMPS],
             lamp_count: 0,
+            matcap: frame.matcap(),
             lone: frame.lone_light(),
         };
         for (place, placed) in content.placed.iter_mut().zip(frame.instances()) {
@@ -146,6 +148,7 @@ impl<'a> Content<'a> {
                     instances,
                     lighting: Lighting {
                         ambient: self.settings.ambient,
+                        matcap: self.matcap,
                         lamps: self.lamps(),
                     },
                     shadows: self.settings.shadows,

@@ -98,6 +98,7 @@ fn file(height: u16, asset: &[u8]) -> Vec<u8> {
         assets: &[asset],
         instances: &[Placed::ALONE],
         lamps: &[lamp],
+        matcap: None,
     };
     rhogrid_frame::write(&content, |piece| bytes.extend(piece));
     bytes

@@ -94,6 +94,7 @@ mod tests {
             assets: &[asset],
             instances: &[Placed::ALONE],
             lamps: &[],
+            matcap: None,
         };
         FrameFile::new(&content).expect("fits a file")
     }

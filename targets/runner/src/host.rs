@@ -44,6 +44,7 @@ pub fn render(file: &FrameFile) -> Result<Vec<HostFrame>, Error> {
         instances: &instances,
         lighting: Lighting {
             ambient: settings.ambient,
+            matcap: frame.matcap(),
             lamps: &lamps,
         },
         shadows: settings.shadows,

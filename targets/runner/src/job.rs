@@ -63,6 +63,7 @@ impl Job {
             assets: &[asset.bytes()],
             instances: &[Placed::ALONE],
             lamps: &[lamp(&self.light)],
+            matcap: None,
         })
     }
 
@@ -88,6 +89,7 @@ impl Job {
             assets: &assets,
             instances: &instances,
             lamps: &lamps(&scene),
+            matcap: scene.matcap(),
         })
     }
 
