@@ -161,9 +161,10 @@ fn channels(colour: Rgb) -> DVec3 {
 }
 
 impl Coat {
+    /// Exactly the corners' colour where they have but one.
     fn colour(&self, weights: DVec3) -> DVec3 {
         let [a, b, c] = self.colours;
-        a * weights.x + b * weights.y + c * weights.z
+        a + (b - a) * weights.y + (c - a) * weights.z
     }
 
     /// The interpolated unit normal; zero where the corners' normals cancel out.
@@ -204,19 +205,20 @@ fn blend(discs: &Hierarchy<Disc>, colours: &[Rgb], ray: &Ray, sides: Sides) -> O
     let radius = f64::from(first.radius);
     let reach = first_hit.distance + radius / ray.direction.length();
     let (mut distance, mut total) = (0.0, 0.0);
-    let (mut normal, mut diffuse) = (DVec3::ZERO, DVec3::ZERO);
+    // From the first disc's colour, which stays exact where all have it.
+    let (mut normal, mut apart) = (DVec3::ZERO, DVec3::ZERO);
     for (disc, hit) in discs.within(ray, sides, reach) {
         let weight = disc.weight(ray.at(hit.distance));
         distance += weight * hit.distance;
         normal += weight * disc.seen_normal(hit);
-        diffuse += weight * colour(disc);
+        apart += weight * (colour(disc) - colour(first));
         total += weight;
     }
     Some(if total > 0.0 {
         Blend {
             distance: distance / total,
             normal: normal.normalize_or_zero(),
-            diffuse: diffuse / total,
+            diffuse: colour(first) + apart / total,
             radius,
         }
     } else {
