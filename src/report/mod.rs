@@ -17,6 +17,7 @@ mod memory;
 mod model;
 mod operations;
 mod page;
+mod paper;
 mod plot;
 mod quality;
 mod row;
@@ -31,6 +32,7 @@ use crate::output::write_whole;
 pub use effort::Effort;
 pub use machine::Machine;
 pub use model::Model;
+pub use paper::Comparison;
 pub use row::{Row, Setting, Subject, write_csv};
 
 /// Hears what is being done.

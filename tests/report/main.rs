@@ -1,6 +1,8 @@
 //! The report, small: its rows are there, say what other ways of asking say,
 //! and are what its files show.
 
+mod paper;
+
 use std::process::Command;
 use std::sync::OnceLock;
 
