@@ -1,4 +1,5 @@
 use super::*;
+use crate::normal::decode;
 use crate::numbers::{Unit, Weight};
 use crate::placement::{Inverse, Placement};
 use crate::scene::{Lamp, Matcap};
