@@ -381,7 +381,12 @@ fn counters_count_masks() {
             .map(Vec::len)
             .sum::<usize>();
         let leaves = model.levels[usize::from(depth)].len();
-        let all = frame(&model, &view(4.0), 0.0).stats;
+        // Nor is anything hidden.
+        let everything = Quality {
+            culling: false,
+            ..quality(0.0)
+        };
+        let all = frame_with(&model, &view(4.0), &everything).stats;
         assert_eq!(all.nodes_visited as usize, masks);
         assert_eq!(all.samples_drawn as usize, leaves);
         assert_eq!((all.nodes_outside, all.nodes_back_facing), (0, 0));

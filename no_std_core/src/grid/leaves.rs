@@ -51,6 +51,10 @@ impl<'a, const CELLS: usize, const LEVELS: usize, P: Pixel> Frame<'a, CELLS, LEV
             return;
         }
         let inverse = reciprocal(w as u32);
+        if self.plan.hides && self.hides_block(cell, inverse, nearest, output.canvas) {
+            output.stats.nodes_hidden += 1;
+            return;
+        }
         let table = self.tables.below(cell.depth);
         let slopes = Slopes::at(cell.centre, inverse, &table.half_edges);
         let extent = Extent {

@@ -28,8 +28,9 @@ fn drawn(model: &Model, two_sided: bool, camera: &Camera, quality: &Quality, row
 #[test]
 fn what_is_hidden_does_not_show() {
     let mut rng = Rng::with_seed(71);
-    let mut hidden = 0;
-    for case in 0..120 {
+    // Of packed subtrees, and of blocks that are projected exactly.
+    let mut hidden = [0; 2];
+    for case in 0..200 {
         let (rho, depth) = [(2, 5), (3, 3), (4, 2), (5, 2)][case % 4];
         let cells = f64::from(rho).powi(3 * i32::from(depth));
         let share = 0.3 + 0.7 * rng.f64();
@@ -39,11 +40,16 @@ fn what_is_hidden_does_not_show() {
             // A cone of its own would turn away, and a sheet turn over.
             cell.flags.aperture = 14;
         }
-        let pixels = 0.3 + 0.9 * rng.f64();
+        let is_exact = rng.bool();
+        let pixels = if is_exact { 8.0 } else { 1.2 };
+        let pixels = 0.3 + pixels * rng.f64();
         let camera = view(&mut rng, &model, pixels);
         let on = Quality {
             repair: rng.bool(),
-            ..packed(magnitude(&mut rng, 0.25, 8.0))
+            ..match is_exact {
+                true => quality(0.0),
+                false => packed(magnitude(&mut rng, 0.25, 8.0)),
+            }
         };
         let off = Quality {
             culling: false,
@@ -55,9 +61,12 @@ fn what_is_hidden_does_not_show() {
         assert!(with.colour == without.colour, "case {case}: colours differ");
         assert!(with.depth == without.depth, "case {case}: depths differ");
         assert_eq!(without.stats.nodes_hidden, 0, "case {case}");
-        hidden += with.stats.nodes_hidden;
+        hidden[usize::from(is_exact)] += with.stats.nodes_hidden;
     }
-    assert!(hidden > 2000, "{hidden} nodes are hidden");
+    assert!(
+        hidden.iter().all(|&nodes| nodes > 2000),
+        "{hidden:?} nodes are hidden"
+    );
 }
 
 /// Cones of every width whose samples all face away: packed, not one is drawn.
