@@ -44,7 +44,7 @@ impl Stage {
 
     /// The stage that a function begins, by its name without hashes.
     pub fn begun_by(function: &str) -> Option<Self> {
-        match function {
+        match without_arguments(function) {
             "rhogrid_core::draw::stages::shade" => Some(Self::ShadeTable),
             "rhogrid_core::draw::stages::clear" => Some(Self::Clear),
             "rhogrid_core::draw::stages::resolve" => Some(Self::Resolve),
@@ -53,14 +53,23 @@ impl Stage {
                 let path = function.trim_start_matches('<');
                 let method = path.strip_prefix("rhogrid_core::grid::traverse::Frame<")?;
                 let (_, name) = method.split_once(">::")?;
-                let method = name.strip_suffix('>').map_or(name, |name| {
-                    name.split_once("::<").map_or(name, |(method, _)| method)
-                });
                 ["start", "node"]
-                    .contains(&method)
+                    .contains(&without_arguments(name))
                     .then_some(Self::Traversal)
             }
         }
+    }
+}
+
+/// A function's name without its last generic arguments: `clear` of
+/// `clear::<u32>`.
+fn without_arguments(name: &str) -> &str {
+    match name
+        .strip_suffix('>')
+        .and_then(|name| name.rsplit_once("::<"))
+    {
+        Some((plain, _)) => plain,
+        None => name,
     }
 }
 
@@ -89,10 +98,22 @@ mod tests {
 
     #[test]
     fn functions_begin_stages() {
-        let traverse = "<rhogrid_core::grid::traverse::Frame<27, 9>>::";
+        let traverse = "<rhogrid_core::grid::traverse::Frame<27, 9, u32>>::";
         for (function, stage) in [
             ("rhogrid_core::draw::stages::shade", Some(Stage::ShadeTable)),
             ("rhogrid_core::draw::stages::clear", Some(Stage::Clear)),
+            (
+                "rhogrid_core::draw::stages::clear::<u32>",
+                Some(Stage::Clear),
+            ),
+            (
+                "rhogrid_core::draw::stages::resolve::<[u32; 2]>",
+                Some(Stage::Resolve),
+            ),
+            (
+                "rhogrid_core::draw::stages::resolve::<u32>::{closure#0}",
+                None,
+            ),
             ("rhogrid_core::draw::stages::resolve", Some(Stage::Resolve)),
             ("rhogrid_core::canvas::clear", None),
             ("rhogrid_core::grid::traverse::run::<3, 27, 9>", None),
