@@ -170,15 +170,26 @@ impl<'a, P: Pixel> Canvas<'a, P> {
         self.pixels.get_mut(start..)?.first_chunk_mut()
     }
 
-    /// Pixels of a row from a column on.
+    /// The rows of a rectangle, [first, end) columns and rows, not empty.
     #[inline(always)]
-    pub fn row(&mut self, column: i32, row: i32, columns: usize) -> Option<&mut [P]> {
-        let row = row - i32::from(self.strip.top);
-        let column = column - i32::from(self.strip.left);
-        self.touched
-            .add([column, column + columns as i32 - 1], [row, row]);
-        let start = ((row + GUARD as i32) * PITCH as i32 + column) as usize;
-        self.pixels.get_mut(start..start + columns)
+    pub fn rows(
+        &mut self,
+        [left, right]: [i32; 2],
+        [top, bottom]: [i32; 2],
+    ) -> impl Iterator<Item = &mut [P]> {
+        let strip = &self.strip;
+        let [left, right] = [left, right].map(|column| column - i32::from(strip.left));
+        let [top, bottom] = [top, bottom].map(|row| row - i32::from(strip.top));
+        self.touched.add([left, right - 1], [top, bottom - 1]);
+        let start = ((top + GUARD as i32) * PITCH as i32 + left) as usize;
+        let columns = (right - left) as usize;
+        let length = (bottom - top - 1) as usize * PITCH + columns;
+        let pixels = self
+            .pixels
+            .get_mut(start..start + length)
+            .unwrap_or(&mut []);
+        let rows = pixels.chunks_mut(PITCH);
+        rows.filter_map(move |row| row.get_mut(..columns))
     }
 
     /// Whether a pixel on the canvas shows more than a word.

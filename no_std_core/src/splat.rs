@@ -70,10 +70,7 @@ pub(crate) fn draw<P: Pixel>(
     // One unsigned comparison tells whether a pixel is in the core.
     let core_first = (core_left - left) as u32;
     let core_columns = (core_right - core_left).max(0) as u32;
-    for row in top..bottom {
-        let Some(pixels) = canvas.row(left, row, (right - left) as usize) else {
-            return;
-        };
+    for (pixels, row) in canvas.rows([left, right], [top, bottom]).zip(top..) {
         let core_columns = if row >= core_top && row < core_bottom {
             core_columns
         } else {
