@@ -59,8 +59,8 @@ impl<const CELLS: usize, const LEVELS: usize, P: Pixel> Frame<'_, CELLS, LEVELS,
         // A pixel for what rounding moves.
         let pixels = |at: i32, half: i32| {
             [
-                (at - half >> SCREEN_BITS) - 1,
-                (at + half >> SCREEN_BITS) + 1,
+                ((at - half) >> SCREEN_BITS) - 1,
+                ((at + half) >> SCREEN_BITS) + 1,
             ]
         };
         canvas.exceeds(pixels(place.x, half_x), pixels(place.y, half_y), word)
