@@ -32,7 +32,7 @@ const fn octant() -> [[i16; 3]; OCTANT_CODES] {
     let mut table = [[0; 3]; OCTANT_CODES];
     let mut code = 0;
     while code < OCTANT_CODES {
-        table[code] = unit(centroid(code));
+        table[code] = unit(centroid(code, LEVEL));
         code += 1;
     }
     table
@@ -78,11 +78,13 @@ pub(crate) fn coarse(code: u16) -> [i32; 3] {
     [packed >> 22, packed << 10 >> 21, packed << 21 >> 21]
 }
 
-/// Centroid of a code's triangle, barycentric, in 96ths.
-const fn centroid(code: usize) -> [i64; 3] {
-    // Corners in 32nds.
-    let mut corners = [[32i64, 0, 0], [0, 32, 0], [0, 0, 32]];
-    let mut level = LEVEL;
+/// Centroid of a triangle of an octant's face that was subdivided `level` times,
+/// at most 15: barycentric, in parts of 3 * 2^level.
+pub const fn centroid(code: usize, level: u32) -> [i64; 3] {
+    // Corners in parts of 2^level.
+    let one = 1i64 << level;
+    let mut corners = [[one, 0, 0], [0, one, 0], [0, 0, one]];
+    let mut level = level;
     while level > 0 {
         level -= 1;
         let [a, b, c] = corners;
@@ -135,6 +137,14 @@ pub fn decode(code: u16) -> [i32; 3] {
 pub fn encode(direction: [i32; 3]) -> u16 {
     let [x, y, z] = direction;
     let signs = u16::from(x < 0) | u16::from(y < 0) << 1 | u16::from(z < 0) << 2;
+    triangle(direction, LEVEL) as u16 | signs << 10
+}
+
+/// The triangle that contains a direction, of its octant's face, subdivided
+/// `level` times, at most 15: two bits a level, coarsest first. Lengths are those
+/// of [`encode`].
+#[inline]
+pub fn triangle(direction: [i32; 3], level: u32) -> usize {
     let mut weights = direction.map(|component| i64::from(component.unsigned_abs()));
     if weights == [0; 3] {
         weights = [1, 0, 0];
@@ -142,7 +152,7 @@ pub fn encode(direction: [i32; 3]) -> u16 {
     let [x, y, z] = weights;
     let sum = x + y + z;
     let mut code = 0;
-    for _ in 0..LEVEL {
+    for _ in 0..level {
         let [x, y, z] = weights.map(|weight| 2 * weight);
         let (child, next) = if x > sum {
             (0, [x - sum, y, z])
@@ -156,7 +166,7 @@ pub fn encode(direction: [i32; 3]) -> u16 {
         weights = next;
         code = code << 2 | child;
     }
-    code | signs << 10
+    code
 }
 
 #[cfg(test)]

@@ -30,13 +30,15 @@ struct PaperArgs {
     /// Folder for the pictures; made where it is absent
     #[arg(long, value_name = "DIR", default_value = "rhogrid-paper")]
     out: PathBuf,
-    /// Level 3 alone
-    #[arg(long)]
+    /// Level 3 of built-in models alone: seconds
+    #[arg(long, conflicts_with = "models")]
     quick: bool,
-    /// Folder with the models that stand for the paper's [default: built-in ones alone]
+    /// Folder with bunny.ply, dragon_res2.ply, buddha_100k.ply, turbine_blade_199k.ply, or some
+    /// of them, which stand for the paper's models [default: built-in ones alone]
     #[arg(long, value_name = "DIR")]
     models: Option<PathBuf>,
-    /// Estimate cycles with targets/run NAME, for frames a second; from the project's folder
+    /// Estimate cycles with targets/run NAME, for frames a second, instead of host times; from
+    /// the project's folder
     #[arg(long, value_name = "NAME")]
     machine: Option<String>,
 }

@@ -6,7 +6,8 @@ use glam::DVec3;
 use rhogrid_core::asset::Grid;
 use rhogrid_core::numbers::{Length, Unit, Weight};
 use rhogrid_core::placement::Placement;
-use rhogrid_core::scene::{Instance, Lamp};
+use rhogrid_core::scene::{Instance, Lamp, Lighting, Scene as CoreScene};
+use rhogrid_core::shadow::Shadows;
 
 use super::model::{bake_asset, is_asset, load_geometry};
 use crate::asset_file::AssetFile;
@@ -110,4 +111,19 @@ pub fn lamps(scene: &Scene) -> Vec<Lamp> {
 /// The ambient weight.
 pub fn ambient(scene: &Scene) -> Weight {
     Weight::from_num(scene.lighting.ambient)
+}
+
+/// Hands a scene to what draws the core's.
+pub fn with_core<T>(scene: &Scene, shadows: Shadows, draw: impl FnOnce(&CoreScene<'_>) -> T) -> T {
+    let (grids, placements, lamps) = (grids(scene), placements(scene), lamps(scene));
+    let instances = instances(scene, &grids, &placements);
+    draw(&CoreScene {
+        instances: &instances,
+        lighting: Lighting {
+            ambient: ambient(scene),
+            matcap: scene.matcap(),
+            lamps: &lamps,
+        },
+        shadows,
+    })
 }

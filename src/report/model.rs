@@ -84,6 +84,11 @@ pub fn bright() -> view::Light {
     float_light(&defaults().quality)
 }
 
+/// The core's camera of a view of an asset.
+pub fn camera(asset: &AssetFile, view: &ViewArgs) -> Camera {
+    core_camera(view, asset.grid().radius(), &asset.cube())
+}
+
 impl Model {
     /// The built-in scene.
     ///
@@ -109,24 +114,32 @@ impl Model {
     /// # Errors
     /// When it has no extent.
     pub fn new(name: String, geometry: Geometry, up: Up, effort: &Effort) -> Result<Self, Error> {
-        let view = |yaw| ViewArgs {
-            yaw,
-            size: Size {
-                width: effort.width,
-                height: effort.height,
-            },
-            ..defaults().view
+        let size = Size {
+            width: effort.width,
+            height: effort.height,
         };
+        let views = Self::full_views()
+            .into_iter()
+            .map(|view| ViewArgs { size, ..view });
         Ok(Self {
             name,
             cube: Cube::of(&geometry)?,
             up,
             scene: Scene::new(&geometry, false),
             geometry,
-            views: YAWS.map(view).to_vec(),
+            views: views.collect(),
             references: OnceCell::new(),
             baked: RefCell::default(),
         })
+    }
+
+    /// The four full views, of the standard size.
+    pub fn full_views() -> Vec<ViewArgs> {
+        let view = |yaw| ViewArgs {
+            yaw,
+            ..defaults().view
+        };
+        YAWS.map(view).to_vec()
     }
 
     /// Bakes, or gives what was baked before.
@@ -174,17 +187,20 @@ impl Model {
     /// The reference of each view with so many samples squared a pixel.
     pub fn rendered(&self, samples_per_axis: u32) -> Vec<Reference> {
         let views = self.views.iter();
-        let draw = |view| {
-            let view = float_view(view, &self.cube);
-            render(
-                &self.scene,
-                &view,
-                &bright().into(),
-                samples_per_axis,
-                &|_| {},
-            )
-        };
-        views.map(draw).collect()
+        views
+            .map(|view| self.reference(view, bright(), samples_per_axis))
+            .collect()
+    }
+
+    /// The reference of a view under a light.
+    pub fn reference(
+        &self,
+        view: &ViewArgs,
+        light: view::Light,
+        samples_per_axis: u32,
+    ) -> Reference {
+        let view = float_view(view, &self.cube);
+        render(&self.scene, &view, &light.into(), samples_per_axis, &|_| {})
     }
 
     /// A view in the cube's coordinates.
@@ -204,8 +220,7 @@ impl Model {
     /// The core's camera of each view.
     pub fn cameras(&self, asset: &AssetFile) -> Vec<Camera> {
         let views = self.views.iter();
-        let camera = |view| core_camera(view, asset.grid().radius(), &asset.cube());
-        views.map(camera).collect()
+        views.map(|view| camera(asset, view)).collect()
     }
 
     /// The draw call of each view.

@@ -1,13 +1,13 @@
 //! `rhogrid render SCENE.toml`.
 
 use rhogrid_core::numbers::Length;
-use rhogrid_core::scene::{Lighting as CoreLighting, Scene as CoreScene};
+use rhogrid_core::scene::Scene as CoreScene;
 use rhogrid_core::shadow::{Method, Shadows};
 
 use super::super::Failure;
 use super::super::args::ShadowChoice;
 use super::super::frame::{core_camera, core_quality, core_shadows, draw_placed, float_view};
-use super::super::scene::{ambient, grids, instances, lamps, load_scene, placements};
+use super::super::scene::{load_scene, with_core};
 use super::report::{Report, print};
 use super::{RenderArgs, draw_reference, edge_radius, output_at, trace, view_at};
 use crate::geometry::Geometry;
@@ -68,25 +68,27 @@ fn draw(
     original: Option<&(reference::Scene, Lighting)>,
     index: u32,
 ) -> Result<(), Failure> {
+    let shadows = core_shadows(&args.quality, ShadowChoice::OnePass);
+    with_core(scene, shadows, |content| {
+        draw_content(args, scene, content, original, index)
+    })
+}
+
+fn draw_content(
+    args: &RenderArgs,
+    scene: &Scene,
+    content: &CoreScene<'_>,
+    original: Option<&(reference::Scene, Lighting)>,
+    index: u32,
+) -> Result<(), Failure> {
     let view = view_at(args, index);
     let output = output_at(args, index);
-    let (grids, placements, lamps) = (grids(scene), placements(scene), lamps(scene));
-    let instances = instances(scene, &grids, &placements);
-    let content = CoreScene {
-        instances: &instances,
-        lighting: CoreLighting {
-            ambient: ambient(scene),
-            matcap: scene.matcap(),
-            lamps: &lamps,
-        },
-        shadows: core_shadows(&args.quality, ShadowChoice::OnePass),
-    };
     let camera = core_camera(&view, Length::ONE, &scene.cube);
     let quality = core_quality(&args.quality);
     if args.verbose && !args.json {
-        describe(scene, &content)?;
+        describe(scene, content)?;
     }
-    let frame = draw_placed(&content, &camera, &quality, args.frames);
+    let frame = draw_placed(content, &camera, &quality, args.frames);
     let picture = frame.picture();
     picture.save_png(&output)?;
     let measures = original.map(|(original, lighting)| {
@@ -99,7 +101,7 @@ fn draw(
             };
             let without = CoreScene {
                 shadows: dark,
-                ..content
+                ..*content
             };
             let lit = draw_placed(&without, &camera, &quality, 1).picture();
             let view = float_view(&view, &scene.cube);

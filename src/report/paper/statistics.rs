@@ -1,70 +1,57 @@
 //! Table 4: samples, alpha and file sizes.
 
+use std::iter::Sum;
+
 use rhogrid_core::asset::Shell;
 
 use super::Comparison;
-use super::subject::Subjects;
+use super::subject::{Subjects, line};
 use crate::bake::GridOptions;
 use crate::cli::Description;
 use crate::error::Error;
 use crate::geometry::Geometry;
+use crate::report::Model;
 use crate::report::page::Table;
 
-/// Table 4, a model: polygons; samples, alpha and bytes at levels 3, 4 and 5.
+/// Table 4, a model: thousand polygons; thousand samples, alpha and thousand
+/// bytes at levels 3, 4 and 5.
 struct Printed {
     polygons: f64,
     samples: [f64; 3],
-    alpha: [f64; 3],
+    alpha: Option<[f64; 3]>,
     bytes: [f64; 3],
 }
 
-const fn printed(polygons: f64, samples: [f64; 3], alpha: [f64; 3], bytes: [f64; 3]) -> Printed {
-    Printed {
-        polygons,
-        samples,
-        alpha,
-        bytes,
-    }
-}
-
 /// In the order of [`Subjects::all`].
+#[rustfmt::skip]
 const TABLE_4: [Printed; 6] = [
-    printed(
-        69e3,
-        [26e3, 230e3, 2.1e6],
-        [9.36, 9.03, 9.0],
-        [76.8e3, 698e3, 6.28e6],
-    ),
-    printed(
-        870e3,
-        [18e3, 170e3, 1.5e6],
-        [9.75, 9.19, 9.04],
-        [54.5e3, 506e3, 4.6e6],
-    ),
-    printed(
-        1.08e6,
-        [14e3, 130e3, 1.2e6],
-        [10.3, 9.45, 9.07],
-        [41.5e3, 396e3, 3.65e6],
-    ),
-    printed(
-        1.76e6,
-        [17e3, 180e3, 1.7e6],
-        [13.19, 10.77, 9.26],
-        [46.2e3, 520e3, 5.06e6],
-    ),
-    printed(
-        540e3,
-        [40e3, 370e3, 3.2e6],
-        [11.45, 9.18, 8.63],
-        [114e3, 1.1e6, 9.77e6],
-    ),
-    printed(
-        420e3,
-        [45e3, 430e3, 3.4e6],
-        [13.62, 9.62, 7.84],
-        [121e3, 1.28e6, 10.7e6],
-    ),
+    Printed { polygons: 69.0, samples: [26.0, 230.0, 2100.0], alpha: Some([9.36, 9.03, 9.0]), bytes: [76.8, 698.0, 6280.0] },
+    Printed { polygons: 870.0, samples: [18.0, 170.0, 1500.0], alpha: Some([9.75, 9.19, 9.04]), bytes: [54.5, 506.0, 4600.0] },
+    Printed { polygons: 1080.0, samples: [14.0, 130.0, 1200.0], alpha: Some([10.3, 9.45, 9.07]), bytes: [41.5, 396.0, 3650.0] },
+    Printed { polygons: 1760.0, samples: [17.0, 180.0, 1700.0], alpha: Some([13.19, 10.77, 9.26]), bytes: [46.2, 520.0, 5060.0] },
+    Printed { polygons: 540.0, samples: [40.0, 370.0, 3200.0], alpha: Some([11.45, 9.18, 8.63]), bytes: [114.0, 1100.0, 9770.0] },
+    Printed { polygons: 420.0, samples: [45.0, 430.0, 3400.0], alpha: Some([13.62, 9.62, 7.84]), bytes: [121.0, 1280.0, 10700.0] },
+];
+#[rustfmt::skip]
+const BIG_SCENE: Printed =
+    Printed { polygons: 4670.0, samples: [134.0, 1280.0, 11000.0], alpha: None, bytes: [377.0, 4500.0, 40000.0] };
+
+/// The level of the first of three printed numbers.
+const FIRST_LEVEL: u8 = 3;
+
+const COLUMNS: [&str; 12] = [
+    "model, level",
+    "polygons, the paper",
+    "ours",
+    "samples, the paper",
+    "fat",
+    "thin",
+    "alpha, the paper",
+    "fat",
+    "thin",
+    "file, the paper",
+    "fat",
+    "thin",
 ];
 
 /// The table.
@@ -72,89 +59,132 @@ const TABLE_4: [Printed; 6] = [
 /// # Errors
 /// When a model cannot be read or baked.
 pub fn table(comparison: &Comparison<'_>, subjects: &Subjects) -> Result<String, Error> {
-    let mut text = String::from(
-        "\n## Table 4: the models\n\n\
-        Thousands of polygons and leaf samples; alpha, the mean number of non-empty subcells of \
-        the level above the leaves; files in thousand bytes, 16 bits an attribute. The paper's \
-        cells are those that the surface touches: our fat shell. Thin ones are the default.\n\n",
-    );
-    let mut table = Table::new(&[
-        "model, level",
-        "polygons, the paper",
-        "ours",
-        "samples, the paper",
-        "fat",
-        "thin",
-        "alpha, the paper",
-        "fat",
-        "file, the paper",
-        "fat",
-        "thin",
-    ]);
-    for (subject, paper) in subjects.all().into_iter().zip(&TABLE_4) {
-        let model = subject.load(comparison)?;
-        let polygons = model.as_ref().map(|model| match &model.geometry {
-            Geometry::Mesh(mesh) => mesh.triangles.len() as f64 / 1e3,
-            Geometry::Cloud(_) => 0.0,
-        });
-        for &level in comparison.levels() {
-            let at = usize::from(level - 3);
-            let own = |shell| {
-                let model = model.as_ref()?;
-                let options = GridOptions {
-                    level,
-                    shell,
-                    ..GridOptions::default()
-                };
-                let baked = model.baked(options, comparison.progress);
-                let counts = baked.map(|baked| Counts::of(&Description::of(&baked.asset)));
-                model.forget();
-                Some(counts)
-            };
-            let fat = own(Shell::Fat).transpose()?;
-            let thin = own(Shell::Thin).transpose()?;
-            let thousands = |of: fn(&Counts) -> f64, counts: &Option<Counts>| {
-                counts.as_ref().map(|counts| of(counts) / 1e3)
-            };
-            let values = [
-                Some(paper.polygons / 1e3),
-                polygons,
-                Some(paper.samples[at] / 1e3),
-                thousands(|counts| counts.leaves, &fat),
-                thousands(|counts| counts.leaves, &thin),
-                Some(paper.alpha[at]),
-                fat.as_ref().map(|counts| counts.alpha),
-                Some(paper.bytes[at] / 1e3),
-                thousands(|counts| counts.bytes, &fat),
-                thousands(|counts| counts.bytes, &thin),
-            ];
-            let there = if model.is_some() { "" } else { ", not there" };
-            let name = format!("{} ({}{there}), {level}", subject.name, subject.ours);
-            table.line(name, values, 2);
+    let mut table = Table::new(&COLUMNS);
+    let levels = comparison.levels();
+    let mut together: Vec<Vec<Counts>> = vec![Vec::new(); levels.len()];
+    for (subject, printed) in subjects.all().into_iter().zip(&TABLE_4) {
+        let is_in_scene = subjects
+            .of_big_scene()
+            .iter()
+            .any(|own| own.name == subject.name);
+        for (&level, together) in levels.iter().zip(&mut together) {
+            let model = subject.load(comparison)?;
+            let counts = model.map(|model| Counts::of(comparison, model, level));
+            let counts = counts.transpose()?;
+            table.line(
+                subject.line(level),
+                printed.beside(level, counts.as_ref()),
+                2,
+            );
+            together.extend(counts.filter(|_| is_in_scene));
         }
     }
-    text += &table.to_string();
-    Ok(text)
+    for (&level, together) in levels.iter().zip(together) {
+        let absence = subjects.absence_from_big_scene();
+        let sum = absence
+            .is_none()
+            .then(|| together.into_iter().sum::<Counts>());
+        let name = line("Big Scene (its five models)", level, absence);
+        table.line(name, BIG_SCENE.beside(level, sum.as_ref()), 2);
+    }
+    Ok(format!(
+        "\n## Table 4: the models\n\n\
+        Thousands of polygons and leaf samples; alpha, the samples of a level over those of the \
+        level before it, which is the mean number of non-empty subcells there; files in thousand \
+        bytes, with all that they hold, 16 bits an attribute. The paper's cells are those that the \
+        surface touches: our fat shell. Thin ones are the default. The Big Scene is the sum of all \
+        but the bunny, as the paper's samples are; without the ground. No view.\n\n{table}"
+    ))
+}
+
+impl Printed {
+    /// The cells of a level's line.
+    fn beside(&self, level: u8, ours: Option<&Counts>) -> Vec<Option<f64>> {
+        let at = usize::from(level - FIRST_LEVEL);
+        let shells = |of: fn(&Shelled) -> Option<f64>| {
+            let shells = |ours: &Counts| [of(&ours.fat), of(&ours.thin)];
+            ours.map_or([None; 2], shells)
+        };
+        let mut cells = vec![Some(self.polygons), ours.map(|ours| ours.polygons / 1e3)];
+        cells.push(Some(self.samples[at]));
+        cells.extend(shells(|shell| Some(shell.samples / 1e3)));
+        cells.push(self.alpha.map(|alpha| alpha[at]));
+        cells.extend(shells(|shell| shell.alpha));
+        cells.push(Some(self.bytes[at]));
+        cells.extend(shells(|shell| Some(shell.bytes / 1e3)));
+        cells
+    }
+}
+
+/// What a model is baked into.
+#[derive(Clone)]
+struct Counts {
+    polygons: f64,
+    fat: Shelled,
+    thin: Shelled,
 }
 
 /// What an asset holds.
-struct Counts {
-    leaves: f64,
-    alpha: f64,
+#[derive(Clone)]
+struct Shelled {
+    samples: f64,
+    /// `None` for several assets.
+    alpha: Option<f64>,
     bytes: f64,
 }
 
 impl Counts {
-    fn of(description: &Description) -> Self {
-        let count = |from_last: usize| {
-            let cells = description.cells_per_depth.iter().rev().nth(from_last);
-            cells.map_or(1.0, |&cells| cells as f64)
+    fn of(comparison: &Comparison<'_>, model: &Model, level: u8) -> Result<Self, Error> {
+        // Thin ones last: frames may be drawn of them.
+        model.forget();
+        let own = |shell| {
+            let options = GridOptions {
+                level,
+                shell,
+                ..GridOptions::default()
+            };
+            let baked = model.baked(options, comparison.progress)?;
+            Ok(Shelled::of(&Description::of(&baked.asset)))
         };
-        let drawn = description.drawn_cells_per_depth.last();
+        let fat = own(Shell::Fat)?;
+        model.forget();
+        Ok(Self {
+            polygons: match &model.geometry {
+                Geometry::Mesh(mesh) => mesh.triangles.len() as f64,
+                Geometry::Cloud(_) => 0.0,
+            },
+            fat,
+            thin: own(Shell::Thin)?,
+        })
+    }
+}
+
+impl Shelled {
+    fn of(description: &Description) -> Self {
+        let samples = |above: usize| {
+            let drawn = description.drawn_cells_per_depth.iter().rev().nth(above);
+            drawn.map_or(1.0, |&drawn| drawn as f64)
+        };
         Self {
-            leaves: drawn.map_or(1.0, |&drawn| drawn as f64),
-            alpha: count(0) / count(1),
+            samples: samples(0),
+            alpha: Some(samples(0) / samples(1)),
             bytes: description.bytes_total as f64,
+        }
+    }
+}
+
+impl Sum for Counts {
+    fn sum<I: Iterator<Item = Self>>(all: I) -> Self {
+        let all: Vec<Self> = all.collect();
+        let shells = |of: fn(&Self) -> &Shelled| Shelled {
+            samples: all.iter().map(|own| of(own).samples).sum(),
+            alpha: None,
+            bytes: all.iter().map(|own| of(own).bytes).sum(),
+        };
+        Self {
+            polygons: all.iter().map(|own| own.polygons).sum(),
+            fat: shells(|own| &own.fat),
+            thin: shells(|own| &own.thin),
         }
     }
 }
