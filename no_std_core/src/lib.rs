@@ -18,7 +18,8 @@
 //!   depths the larger attribute stays among points, else the first drawn.
 //! * **Faces** are counter-clockwise from their front; normals point outward
 //!   and surfaces are one-sided unless the asset says otherwise.
-//! * **Colours** are RGB565, native words, no gamma. **Angles** are turns.
+//! * **Colours** are RGB565, native words, no gamma: a sample's own, where
+//!   it has one, else its material's. **Angles** are turns.
 //! * **Cells** are ordered x fastest, then y, then z; *level* k has rho^(k +
 //!   1) cells on an axis and consists of the cells of *depth* k + 1.
 //!
