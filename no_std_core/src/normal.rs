@@ -78,6 +78,43 @@ pub(crate) fn coarse(code: u16) -> [i32; 3] {
     [packed >> 22, packed << 10 >> 21, packed << 21 >> 21]
 }
 
+/// Fills a table by code with what stands for the products of normals, Q2.14,
+/// and a vector: `facing` of those above zero, else `away`.
+///
+/// Two octants at once: of the products with a direction and its opposite, one
+/// is at most zero.
+pub(crate) fn fill_facing<T: Copy>(
+    table: &mut [T],
+    towards: [i32; 3],
+    away: T,
+    facing: impl Fn(i32) -> T,
+) {
+    let (octants, _) = table.as_chunks_mut::<OCTANT_CODES>();
+    let [o0, o1, o2, o3, o4, o5, o6, o7] = octants else {
+        return;
+    };
+    // By the signs' bits: x, y, z from bit 0 on.
+    let pairs = [(0, o0, o7), (1, o1, o6), (2, o2, o5), (3, o3, o4)];
+    for (octant, own, opposite) in pairs {
+        let [mut x_axis, mut y_axis, z_axis] = towards;
+        if octant & 1 != 0 {
+            x_axis = -x_axis;
+        }
+        if octant & 2 != 0 {
+            y_axis = -y_axis;
+        }
+        for ((normal, own), opposite) in OCTANT.iter().zip(own).zip(opposite) {
+            let [x, y, z] = normal.map(i32::from);
+            let product = x * x_axis + y * y_axis + z * z_axis;
+            let value = facing(product.abs());
+            (*own, *opposite) = match product > 0 {
+                true => (value, away),
+                false => (away, value),
+            };
+        }
+    }
+}
+
 /// Centroid of a triangle of an octant's face that was subdivided `level` times,
 /// at most 15: barycentric, in parts of 3 * 2^level.
 pub const fn centroid(code: usize, level: u32) -> [i64; 3] {

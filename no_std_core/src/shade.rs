@@ -89,25 +89,26 @@ impl<'a> Shader<'a> {
 
     fn with(model: Model<'a>, paint: Paint<'a>, memory: &'a mut [u16]) -> Self {
         let ambient = [steps(model.ambient); 3];
-        let levels: &[_] = match paint {
-            Paint::Materials(_) => &[],
-            Paint::Samples(levels) => levels,
+        let (levels, length): (&[_], _) = match paint {
+            Paint::Materials(_) => (&[], CODES * model.count),
+            Paint::Samples(levels) => (levels, CODES),
         };
-        let table = match levels {
-            [] => memory.get_mut(..CODES * model.count),
-            _ => memory.get_mut(..CODES),
+        // Brightness is one for all channels, or is not tabulated.
+        let tabulates = levels.is_empty() || model.is_plain();
+        let table = match memory.get_mut(..length).filter(|_| tabulates) {
+            None => &[],
+            Some(table) => {
+                match paint {
+                    Paint::Materials(_) => model.fill(table),
+                    Paint::Samples(_) => model.fill_brightness(table),
+                }
+                &*table
+            }
         };
-        let table = table.and_then(|table| {
-            let is_full = match levels {
-                [] => model.fill(table),
-                _ => model.fill_brightness(table),
-            };
-            is_full.then_some(&*table)
-        });
         Self {
             dark: model.ramps.map(|ramp| ramp.colour(ambient)),
             model,
-            table: table.unwrap_or(&[]),
+            table,
             levels,
         }
     }

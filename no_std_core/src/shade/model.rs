@@ -3,7 +3,7 @@
 use super::matcap::LitSphere;
 use super::ramp::{BRIGHTNESS, Ramp, STEPS, steps};
 use crate::asset::{MAX_MATERIALS, Rgb};
-use crate::normal::{CODES, OCTANT, OCTANT_CODES, decode};
+use crate::normal::{CODES, decode, fill_facing};
 use crate::numbers::Weight;
 use crate::placement::NormalMap;
 use crate::scene::MAX_LAMPS;
@@ -128,59 +128,35 @@ impl<'a> Model<'a> {
     }
 
     /// Whether brightness is that of one white light on normals as they are.
-    fn is_plain(&self) -> bool {
+    pub fn is_plain(&self) -> bool {
         let is_white = self.lamp_count == 1 && self.lamps[0].colour == [WHITE; 3];
         is_white && self.normals.is_none() && self.sphere.is_none()
     }
 
-    /// Fills the table of brightness by normal, which suits every colour, if
-    /// that is one for all channels.
-    pub fn fill_brightness(&self, table: &mut [u16]) -> bool {
-        if self.is_plain() {
-            self.fill_material(&BRIGHTNESS, table);
-        }
-        self.is_plain()
+    /// Fills the table of brightness by normal, which suits every colour: of one
+    /// white light.
+    pub fn fill_brightness(&self, table: &mut [u16]) {
+        self.fill_material(&BRIGHTNESS, table);
     }
 
     /// Fills the table, material after material.
-    pub fn fill(&self, table: &mut [u16]) -> bool {
+    pub fn fill(&self, table: &mut [u16]) {
         if !self.is_plain() {
             for (colour, attribute) in table.iter_mut().zip(0u16..) {
                 *colour = self.colour(attribute, 0);
             }
-            return true;
+            return;
         }
         let ramps = self.ramps.iter().take(self.count);
         for (colours, ramp) in table.chunks_exact_mut(CODES).zip(ramps) {
             self.fill_material(&ramp.all(), colours);
         }
-        true
     }
 
-    /// Two octants at once: of the cosines with a direction and its opposite,
-    /// one is at most zero.
     fn fill_material(&self, ramp: &[u16; STEPS + 1], colours: &mut [u16]) {
-        let (octants, _) = colours.as_chunks_mut::<OCTANT_CODES>();
-        let [o0, o1, o2, o3, o4, o5, o6, o7] = octants else {
-            return;
-        };
         let dark = ramp[self.brightness(0)];
-        // By the signs' bits: x, y, z from bit 0 on.
-        let pairs = [(0, o0, o7), (1, o1, o6), (2, o2, o5), (3, o3, o4)];
-        for (octant, own, opposite) in pairs {
-            let [mut light_x, mut light_y, light_z] = self.lamps[0].towards;
-            if octant & 1 != 0 {
-                light_x = -light_x;
-            }
-            if octant & 2 != 0 {
-                light_y = -light_y;
-            }
-            for ((normal, own), opposite) in OCTANT.iter().zip(own).zip(opposite) {
-                let [x, y, z] = normal.map(i32::from);
-                let dot = x * light_x + y * light_y + z * light_z;
-                let lit = ramp[self.brightness(dot.abs())];
-                (*own, *opposite) = if dot > 0 { (lit, dark) } else { (dark, lit) };
-            }
-        }
+        fill_facing(colours, self.lamps[0].towards, dark, |cosine| {
+            ramp[self.brightness(cosine)]
+        });
     }
 }

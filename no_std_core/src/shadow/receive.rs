@@ -22,7 +22,7 @@ use super::map::CastForms;
 use super::space::LightSpace;
 use crate::camera::Camera;
 use crate::divisor::Divisor;
-use crate::normal::{CODES, OCTANT, OCTANT_CODES};
+use crate::normal::{CODES, fill_facing};
 use crate::numbers::{SplatPx, Unit, bit_length};
 use crate::placement::NormalMap;
 use crate::projection::{DepthToW, Projection};
@@ -161,30 +161,7 @@ fn fill_slopes(slopes: &mut [u8], normals: &NormalMap, light: [Unit; 3]) {
         }
         return;
     }
-    let (octants, _) = slopes.as_chunks_mut::<OCTANT_CODES>();
-    let [o0, o1, o2, o3, o4, o5, o6, o7] = octants else {
-        return;
-    };
-    // By the signs' bits: x, y, z from bit 0 on.
-    let pairs = [(0, o0, o7), (1, o1, o6), (2, o2, o5), (3, o3, o4)];
-    for (octant, own, opposite) in pairs {
-        let [mut light_x, mut light_y, light_z] = towards;
-        if octant & 1 != 0 {
-            light_x = -light_x;
-        }
-        if octant & 2 != 0 {
-            light_y = -light_y;
-        }
-        for ((normal, own), opposite) in OCTANT.iter().zip(own).zip(opposite) {
-            let [x, y, z] = normal.map(i32::from);
-            let dot = x * light_x + y * light_y + z * light_z;
-            let tangent = tangent(dot.abs());
-            (*own, *opposite) = match dot > 0 {
-                true => (tangent, AWAY),
-                false => (AWAY, tangent),
-            };
-        }
-    }
+    fill_facing(slopes, towards, AWAY, tangent);
 }
 
 /// The tangent of an angle by its cosine, Q4.28.
