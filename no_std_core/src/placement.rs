@@ -55,15 +55,14 @@ impl Placement {
         }
     }
 
-    /// The camera as the placed grid sees it. `None` if the axes span no
-    /// volume.
-    pub(crate) fn sight(&self, camera: &Camera) -> Option<Sight> {
+    /// The camera as the placed grid sees it, given the map's inverse.
+    pub(crate) fn sight(&self, camera: &Camera, inverse: &Inverse) -> Sight {
         let from_eye = difference(self.origin, camera.eye);
-        Some(Sight {
+        Sight {
             rows: [camera.right, camera.up, camera.forward].map(|v| self.row(v, from_eye)),
-            eye: Inverse::of(self)?.point(difference(camera.eye, self.origin)),
+            eye: inverse.point(difference(camera.eye, self.origin)),
             half_side: self.half_side(),
-        })
+        }
     }
 
     /// (p - from) . direction for model points p, `origin` being the map's
@@ -340,7 +339,8 @@ mod tests {
         let mut rng = fastrand::Rng::with_seed(7);
         for _ in 0..200 {
             let camera = crate::testing::view::camera(&mut rng, 20.0, 320.0);
-            let sight = Placement::IDENTITY.sight(&camera).expect("has volume");
+            let inverse = Inverse::of(&Placement::IDENTITY).expect("has volume");
+            let sight = Placement::IDENTITY.sight(&camera, &inverse);
             let own = Sight::new(&camera);
             assert_eq!(sight.rows, own.rows);
             for (placed, own) in sight.eye.iter().zip(own.eye) {

@@ -10,7 +10,7 @@
 //! | offset | bytes | header field |
 //! |---|---|---|
 //! | 0 | 4 | magic `RHOG` |
-//! | 4 | 2 | version, 2 |
+//! | 4 | 2 | version, 3 |
 //! | 6 | 2 | header bytes H = 64 + 16 x sections |
 //! | 8 | 1 | kind: 1 grid |
 //! | 9 | 1 | rho, 2 to 5 |

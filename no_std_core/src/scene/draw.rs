@@ -23,8 +23,8 @@ pub struct Memory<'a> {
     /// [`crate::draw::shades_len`] words for the instance with the most
     /// materials. Where it is shorter, samples are shaded one by one.
     pub shades: &'a mut [u16],
-    /// [`crate::shadow::Shadows::map_len`] words for each lamp that casts. Lamps for which it
-    /// is too short cast no shadows.
+    /// [`crate::shadow::Shadows::map_len`] words for each lamp that casts. Lamps
+    /// for which it is too short cast no shadows.
     pub shadows: &'a mut [u16],
 }
 
@@ -43,18 +43,26 @@ pub fn draw_scene(
     if order.is_none() {
         maps.cast(scene, &mut stats);
     }
-    let sight = |instance: &Instance<'_>| instance.placement.sight(camera);
+    let seen = |instance: &Instance<'_>| {
+        let inverse = Inverse::of(&instance.placement)?;
+        Some((instance.placement.sight(camera, &inverse), inverse))
+    };
     let range = match scene.instances {
         [_] => None,
-        _ => Some(range(scene.instances.iter().filter_map(sight))),
+        _ => Some(range(
+            scene
+                .instances
+                .iter()
+                .filter_map(seen)
+                .map(|(sight, _)| sight),
+        )),
     };
     target.clear();
     for place in 0..scene.instances.len() {
         let index = order.as_ref().and_then(|order| order.get(place));
         let instance = scene.instances.get(*index.unwrap_or(&place));
         if let Some(instance) = instance
-            && let Some(sight) = sight(instance)
-            && let Some(inverse) = Inverse::of(&instance.placement)
+            && let Some((sight, inverse)) = seen(instance)
         {
             let frame = InstanceFrame {
                 scene,
