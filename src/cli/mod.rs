@@ -25,7 +25,7 @@ pub use frame::{
 };
 pub use info::Description;
 pub use model::Model;
-pub use scene::{ambient, grids, instances, is_scene, lamps, load_scene, placements, with_core};
+pub use scene::{ambient, is_scene, lamps, load_scene, placements, with_core};
 
 /// Bakes, previews and measures 3D assets for devices without FPU, GPU or
 /// heap. Without a command it runs the demo.

@@ -57,7 +57,7 @@ impl Load for FromFiles<'_> {
 }
 
 /// The grids of a scene's models.
-pub fn grids(scene: &Scene) -> Vec<Grid<'_>> {
+fn grids(scene: &Scene) -> Vec<Grid<'_>> {
     scene
         .models
         .iter()
@@ -82,7 +82,7 @@ pub fn placements(scene: &Scene) -> Vec<Placement> {
 }
 
 /// The instances.
-pub fn instances<'a>(
+fn instances<'a>(
     scene: &'a Scene,
     grids: &'a [Grid<'a>],
     placements: &[Placement],
