@@ -94,7 +94,7 @@ impl<'a> Shader<'a> {
             Paint::Samples(levels) => (levels, CODES),
         };
         // Brightness is one for all channels, or is not tabulated.
-        let tabulates = levels.is_empty() || model.is_plain();
+        let tabulates = levels.is_empty() || model.is_plain;
         let table = match memory.get_mut(..length).filter(|_| tabulates) {
             None => &[],
             Some(table) => {

@@ -24,6 +24,8 @@ pub struct Model<'a> {
     normals: Option<&'a NormalMap>,
     /// What ambient light is.
     pub sphere: Option<LitSphere<'a>>,
+    /// Whether brightness is that of one white light on normals as they are.
+    pub is_plain: bool,
 }
 
 /// A directional light as normals meet it.
@@ -76,6 +78,7 @@ impl<'a> Model<'a> {
             lamp_count: 0,
             normals,
             sphere,
+            is_plain: false,
         };
         for (ramp, &material) in model.ramps.iter_mut().zip(materials) {
             *ramp = Ramp::new(material);
@@ -84,6 +87,8 @@ impl<'a> Model<'a> {
             *lamp = beam;
             model.lamp_count += 1;
         }
+        let is_white = model.lamp_count == 1 && model.lamps[0].colour == [WHITE; 3];
+        model.is_plain = is_white && normals.is_none() && sphere.is_none();
         model
     }
 
@@ -98,6 +103,10 @@ impl<'a> Model<'a> {
     #[inline(never)]
     pub fn colour(&self, attribute: u16, unlit: u32) -> u16 {
         let ramp = &self.ramps[usize::from(attribute >> 13) % MAX_MATERIALS];
+        if unlit == 0 && self.is_plain {
+            let brightness = self.brightness(self.lamps[0].cosine(decode(attribute)));
+            return ramp.colour([brightness; 3]);
+        }
         ramp.colour(self.brightnesses(attribute, unlit))
     }
 
@@ -127,12 +136,6 @@ impl<'a> Model<'a> {
         weights.map(steps)
     }
 
-    /// Whether brightness is that of one white light on normals as they are.
-    pub fn is_plain(&self) -> bool {
-        let is_white = self.lamp_count == 1 && self.lamps[0].colour == [WHITE; 3];
-        is_white && self.normals.is_none() && self.sphere.is_none()
-    }
-
     /// Fills the table of brightness by normal, which suits every colour: of one
     /// white light.
     pub fn fill_brightness(&self, table: &mut [u16]) {
@@ -141,7 +144,7 @@ impl<'a> Model<'a> {
 
     /// Fills the table, material after material.
     pub fn fill(&self, table: &mut [u16]) {
-        if !self.is_plain() {
+        if !self.is_plain {
             for (colour, attribute) in table.iter_mut().zip(0u16..) {
                 *colour = self.colour(attribute, 0);
             }
